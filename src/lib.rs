@@ -1,0 +1,5 @@
+//! twelvefold
+#![cfg_attr(not(feature = "std"), no_std)]
+#![warn(missing_docs)]
+pub mod paper;
+pub mod tiling;

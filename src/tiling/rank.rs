@@ -1,0 +1,123 @@
+//! The exact rank: a numbering of the tiles without gaps, refined from level to level.
+//!
+//! The paper's own value of an F-code (its equations 4 and 5) numbers the tiles with gaps and
+//! collisions; see [`crate::paper`]. With the new digit d most significant, what does number them is
+//!
+//! rank(child) = d·N_m + rank(parent)                  for d = 0 … C,
+//! rank(child) = 13·N_m + rank(parent) − N_{m−1}       for d = D,
+//!
+//! because an `a` tile has no D child and the `a` tiles of level m are exactly the first N_{m−1} ranks.
+//! A tile's centre child keeps its rank, so a rank is a fixed index into one endless sequence.
+
+use core::fmt;
+
+use super::counts::{MAX_LEVEL, TileCounts};
+use super::cyclotomic::OutOfRange;
+use super::fcode::FCode;
+use super::subdivide::Rules;
+use super::tile::{Tile, TileType};
+
+/// Why a rank could not be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RankError {
+    /// The level is past [`MAX_LEVEL`], where ranks leave `u64`.
+    TooDeep {
+        /// The level asked for.
+        level: usize,
+    },
+    /// The rank is not below the number of tiles of its level.
+    NoSuchRank {
+        /// The rank.
+        rank: u64,
+        /// The number of tiles.
+        tiles: u64,
+    },
+}
+
+impl fmt::Display for RankError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooDeep { level } => {
+                write!(f, "level {level} is past {MAX_LEVEL}, the last whose ranks fit 64 bits")
+            }
+            Self::NoSuchRank { rank, tiles } => {
+                write!(f, "rank {rank} is not below {tiles}, the number of tiles of its level")
+            }
+        }
+    }
+}
+
+impl core::error::Error for RankError {}
+
+/// The rank of the child with `digit` (0..14) of a level-`level` tile with rank `parent`.
+///
+/// # Errors
+/// [`RankError::TooDeep`] when the child's level is past [`MAX_LEVEL`].
+pub fn child_rank(
+    counts: &TileCounts,
+    level: usize,
+    parent: u64,
+    digit: u8,
+) -> Result<u64, RankError> {
+    counts.at(level + 1)?;
+    let tiles = counts.at(level)?;
+    Ok(if digit < 13 {
+        u64::from(digit) * tiles + parent
+    } else {
+        13 * tiles + parent - counts.before(level)?
+    })
+}
+
+/// The digit and the parent's rank of the level-`level` tile with this rank, `level` ≥ 1.
+fn split(counts: &TileCounts, level: usize, rank: u64) -> Result<(u8, u64), RankError> {
+    let tiles = counts.at(level - 1)?;
+    Ok(if rank / tiles < 13 {
+        ((rank / tiles) as u8, rank % tiles)
+    } else {
+        (13, rank - 13 * tiles + counts.before(level - 1)?)
+    })
+}
+
+impl FCode {
+    /// The exact rank of the tile with this code, below N_K for a code of K digits. O(K).
+    #[must_use]
+    pub fn rank(&self) -> u64 {
+        let counts = TileCounts::of(self.root());
+        self.oldest_first().enumerate().fold(0, |parent, (level, digit)| {
+            // An `FCode` has at most MAX_LEVEL digits and no impossible word.
+            child_rank(counts, level, parent, digit).unwrap_or(parent)
+        })
+    }
+
+    /// The code of the level-`level` tile with this rank under `root`. O(level).
+    ///
+    /// # Errors
+    /// [`RankError`] when the level is too deep or has no such rank.
+    pub fn from_rank(root: TileType, level: usize, rank: u64) -> Result<Self, RankError> {
+        let counts = TileCounts::of(root);
+        let tiles = counts.at(level)?;
+        if rank >= tiles {
+            return Err(RankError::NoSuchRank { rank, tiles });
+        }
+        let mut newest_first = [0; MAX_LEVEL];
+        let mut rest = rank;
+        for (i, digit) in newest_first[..level].iter_mut().enumerate() {
+            (*digit, rest) = split(counts, level - i, rest)?;
+        }
+        Ok(Self::from_valid_newest_first(root, &newest_first[..level]))
+    }
+
+    /// The tile with this code: type, rotation, exact centre. O(levels).
+    ///
+    /// # Errors
+    /// [`OutOfRange`] cannot happen for the at most [`MAX_LEVEL`] levels of a code; it is passed on
+    /// rather than hidden.
+    pub fn tile(&self, rules: &Rules) -> Result<Tile, OutOfRange> {
+        let mut tile = Tile::root(self.root());
+        for digit in self.oldest_first() {
+            tile = rules.child_of(&tile, digit)?.ok_or(OutOfRange)?;
+        }
+        Ok(tile)
+    }
+}
