@@ -4,6 +4,7 @@
 mod args;
 mod failure;
 mod output;
+mod picture;
 mod stipple;
 mod tables;
 
