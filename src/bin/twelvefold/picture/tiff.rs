@@ -70,6 +70,11 @@ pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, Picture
             Some(DecodingResult::U16(_)) => paint!(U16, u16),
             Some(DecodingResult::U32(_)) => paint!(U32, u32),
             Some(DecodingResult::U64(_)) => paint!(U64, u64),
+            Some(DecodingResult::F16(_) | DecodingResult::F32(_) | DecodingResult::F64(_))
+                if !matches!(file.colors, Colors::Gray | Colors::Rgb) =>
+            {
+                return Err(unsupported("float inks"));
+            }
             Some(DecodingResult::F16(_)) => paint!(F16, exr::prelude::f16),
             Some(DecodingResult::F32(_)) => paint!(F32, f32),
             Some(DecodingResult::F64(_)) => paint!(F64, f64),
@@ -197,7 +202,8 @@ fn paint<S: Sample>(
     let stride = parts[0].len() / count;
     let complete = match parts {
         [interleaved] => interleaved.len() == count * stride && stride >= used,
-        separate => separate.len() >= used && separate.iter().all(|part| part.len() == count),
+        // The decoder hands over the padding rows of the lowest tiles of all planes but the first.
+        separate => separate.len() >= used && separate.iter().all(|part| part.len() >= count),
     };
     if !complete {
         return Err(unsupported("strips or tiles of an unexpected size"));
