@@ -2,9 +2,11 @@
 //! nothing, and this file is the only place that prints an error or chooses the exit code.
 
 mod args;
+mod drawing;
 mod failure;
 mod output;
 mod picture;
+mod progress;
 mod stipple;
 mod tables;
 
