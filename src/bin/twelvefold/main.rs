@@ -3,14 +3,17 @@
 
 mod args;
 mod failure;
+mod figures;
 mod output;
 mod stipple;
 mod tables;
+mod tiling;
 
 use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
+use twelvefold::tiling::{Digits, Rules};
 
 use crate::args::{Arguments, Command};
 use crate::failure::Failure;
@@ -26,9 +29,19 @@ fn main() -> ExitCode {
     }
 }
 
+/// The production rules under the digit assignment of `tables/digits.txt`.
+fn rules() -> Result<Rules, Failure> {
+    const FILE: &str = "tables/digits.txt";
+    Digits::parse(include_str!("../../../tables/digits.txt"))
+        .and_then(|digits| Rules::new(&digits))
+        .map_err(|error| Failure::about(FILE, error))
+}
+
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
         Command::Tables => tables::run(),
+        Command::Tiling(options) => tiling::run(options),
+        Command::Figures(options) => figures::run(options),
     }
 }
