@@ -172,6 +172,12 @@ impl Digits {
         Self(digits)
     }
 
+    /// A row a parent, in derivation order; entries past a type's child count mean nothing.
+    #[must_use]
+    pub const fn derivation_order(&self) -> [[u8; MAX_CHILDREN]; 4] {
+        self.0
+    }
+
     /// The digits of the children of `parent`, in derivation order.
     #[must_use]
     pub fn of(&self, parent: TileType) -> &[u8] {
