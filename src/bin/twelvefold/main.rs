@@ -5,6 +5,7 @@ mod args;
 mod failure;
 mod figures;
 mod output;
+mod picture;
 mod stipple;
 mod tables;
 mod tiling;
