@@ -14,7 +14,6 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use twelvefold::tiling::{Digits, Rules};
 
 use crate::args::{Arguments, Command};
 use crate::failure::Failure;
@@ -28,14 +27,6 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// The production rules under the digit assignment of `tables/digits.txt`.
-fn rules() -> Result<Rules, Failure> {
-    const FILE: &str = "tables/digits.txt";
-    Digits::parse(include_str!("../../../tables/digits.txt"))
-        .and_then(|digits| Rules::new(&digits))
-        .map_err(|error| Failure::about(FILE, error))
 }
 
 fn process(arguments: &Arguments) -> Result<(), Failure> {

@@ -3,43 +3,40 @@
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use twelvefold::Tables;
 use twelvefold::paper::{LAMBDA, normalized_threshold};
 use twelvefold::tiling::{FCode, MAX_LEVEL, Rules, Tile, TileCounts, TileType};
 
 use crate::args::TilingOptions;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, OutputError};
 
 const HEADER: &str = "fcode,tile,rotation,z0,z1,z2,z3,rank,threshold,x,y";
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &TilingOptions) -> Result<(), Failure> {
+    let TilingOptions { root, levels, output } = options;
     // Before the output is opened, so that a level past the last leaves nothing behind.
-    TileCounts::of(options.root)
-        .at(options.levels)
-        .map_err(|error| Failure::about("--levels", error))?;
-    let rules = crate::rules()?;
-    let file = options.output.as_deref().filter(|path| *path != Path::new("-"));
-    let failure = |error: io::Error| match file {
-        Some(path) => Failure::at(path, error),
-        None => Failure::about("standard output", error),
+    TileCounts::of(*root).at(*levels).map_err(|error| Failure::about("--levels", error))?;
+    let file = output.as_deref().filter(|path| *path != Path::new("-"));
+    let open = || match file {
+        Some(path) => Output::create(path),
+        None => Ok(Output::standard()),
     };
-    let output = match file {
-        Some(path) => Output::create(path).map_err(|error| Failure::at(path, error))?,
-        None => Output::standard(),
-    };
-    let mut writer = BufWriter::with_capacity(1 << 16, output);
-    let written = write_level(&rules, options.root, options.levels, &mut writer)
-        .and_then(|()| writer.into_inner().map_err(io::IntoInnerError::into_error));
-    match written {
-        Ok(output) => output.commit().or_else(unless_closed).map_err(failure),
-        Err(error) => unless_closed(error).map_err(failure),
+    match open().and_then(|output| write_whole(*root, *levels, output)) {
+        // A reader that has seen enough and closed the pipe is no error.
+        Err(OutputError::Io(error)) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.map_err(|error| match file {
+            Some(path) => Failure::at(path, error),
+            None => Failure::about("standard output", error),
+        }),
     }
 }
 
-/// A reader that has seen enough and closed the pipe is no error.
-fn unless_closed(error: io::Error) -> io::Result<()> {
-    if error.kind() == io::ErrorKind::BrokenPipe { Ok(()) } else { Err(error) }
+fn write_whole(root: TileType, levels: usize, output: Output) -> Result<(), OutputError> {
+    let mut writer = BufWriter::with_capacity(1 << 16, output);
+    write_level(Tables::built_in().rules(), root, levels, &mut writer)?;
+    writer.into_inner().map_err(io::IntoInnerError::into_error)?.commit()
 }
 
 /// Writes the header and the tiles `levels` below `root`.

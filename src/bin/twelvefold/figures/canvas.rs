@@ -11,7 +11,6 @@ const FONTS: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-se
 /// A picture under construction.
 #[derive(Debug)]
 pub(crate) struct Canvas {
-    size: DVec2,
     body: String,
 }
 
@@ -32,12 +31,7 @@ impl Canvas {
                 Escaped(description),
             ),
         );
-        Self { size, body }
-    }
-
-    /// Width and height in pixels.
-    pub(crate) fn size(&self) -> DVec2 {
-        self.size
+        Self { body }
     }
 
     /// A closed polygon. `style` holds attributes, here and below.
@@ -92,6 +86,17 @@ impl Canvas {
                 Number(start.y),
                 Style(style),
                 Subscripts(text)
+            ),
+        );
+    }
+
+    /// Defines a fill `url(#id)` that changes from one colour at the left to another at the right.
+    pub(crate) fn linear_gradient(&mut self, id: &str, left: &str, right: &str) {
+        push(
+            &mut self.body,
+            format_args!(
+                "<linearGradient id=\"{id}\"><stop offset=\"0\" stop-color=\"{left}\"/>\
+                 <stop offset=\"1\" stop-color=\"{right}\"/></linearGradient>\n"
             ),
         );
     }
@@ -262,11 +267,8 @@ mod tests {
 
     #[test]
     fn views_flip_y_about_their_centre() {
-        let view = View {
-            scale: 10.0,
-            centre: DVec2::new(1.0, 2.0),
-            origin: DVec2::new(100.0, 50.0),
-        };
+        let view =
+            View { scale: 10.0, centre: DVec2::new(1.0, 2.0), origin: DVec2::new(100.0, 50.0) };
         assert_eq!(view.map(DVec2::new(1.0, 2.0)), DVec2::new(100.0, 50.0));
         assert_eq!(view.map(DVec2::new(2.0, 3.0)), DVec2::new(110.0, 40.0));
     }

@@ -99,11 +99,7 @@ pub(crate) fn tiles_in(
 ///
 /// # Errors
 /// When the level is past the last.
-pub(crate) fn tiles_of(
-    rules: &Rules,
-    root: TileType,
-    levels: usize,
-) -> Result<Vec<Ranked>> {
+pub(crate) fn tiles_of(rules: &Rules, root: TileType, levels: usize) -> Result<Vec<Ranked>> {
     let everywhere = Window { centre: DVec2::ZERO, size: DVec2::INFINITY };
     tiles_in(rules, root, levels, &everywhere, 0.0)
 }
@@ -152,5 +148,78 @@ impl Search<'_> {
             self.descend(&child, level + 1)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use super::*;
+
+    fn area(corners: &[DVec2]) -> f64 {
+        let next = corners.iter().cycle().skip(1);
+        corners.iter().zip(next).map(|(a, b)| a.perp_dot(*b) / 2.0).sum()
+    }
+
+    #[test]
+    fn a_cell_has_its_types_area_wherever_it_lies() {
+        for kind in TileType::ALL {
+            for rotation in 0..12 {
+                let tile = Tile { rotation, ..Tile::root(kind) };
+                let (p, q) = kind.area();
+                let expected = (p as f64 + q as f64 * 3f64.sqrt()) / 4.0;
+                assert!((area(&cell(&tile)) - expected).abs() < 1e-14, "{tile:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_cells_of_a_level_tile_the_plane() {
+        let tables = twelvefold::Tables::built_in();
+        // Inside 0.2929 of 52 edges, where all tiles descend from the root.
+        let window = Window { centre: DVec2::new(2.5, -1.0), size: DVec2::new(13.0, 12.0) };
+        let tiles = tiles_in(tables.rules(), TileType::A, 3, &window, 2.0).unwrap();
+
+        // Every edge of a cell in the window is the edge of one other cell, in the other direction.
+        let key = |p: DVec2| p.to_array().map(|v| (v * 1e6).round() as i64);
+        let mut edges: HashMap<_, usize> = HashMap::new();
+        let cells: Vec<_> = tiles.iter().map(|ranked| (ranked, cell(&ranked.tile))).collect();
+        let sides = |corners: &[DVec2]| -> Vec<[DVec2; 2]> {
+            let next = corners.iter().cycle().skip(1);
+            corners.iter().zip(next).map(|(a, b)| [*a, *b]).collect()
+        };
+        for [a, b] in cells.iter().flat_map(|(_, corners)| sides(corners)) {
+            *edges.entry((key(a), key(b))).or_default() += 1;
+        }
+        assert!(edges.values().all(|count| *count == 1), "cells overlap");
+        let mut inside = 0;
+        for (_, corners) in cells.iter().filter(|(r, _)| window.distance(r.centre()) == 0.0) {
+            for [a, b] in sides(corners) {
+                assert_eq!(edges.get(&(key(b), key(a))), Some(&1), "a gap beside {a} {b}");
+            }
+            inside += 1;
+        }
+        // 4√3 − 6 is the mean area of a cell.
+        let expected = window.size.element_product() / (4.0 * 3f64.sqrt() - 6.0);
+        assert!((f64::from(inside) - expected).abs() < 8.0, "{inside} {expected}");
+    }
+
+    #[test]
+    fn a_window_finds_the_same_tiles_as_the_whole_level() {
+        let tables = twelvefold::Tables::built_in();
+        let window = Window { centre: DVec2::new(-9.0, 4.0), size: DVec2::new(7.0, 30.0) };
+        for root in TileType::ALL {
+            let found = tiles_in(tables.rules(), root, 3, &window, 0.5).unwrap();
+            let all = tiles_of(tables.rules(), root, 3).unwrap();
+            assert_eq!(all.len() as u64, TileCounts::of(root).at(3).unwrap());
+            let expected: Vec<u64> = all
+                .iter()
+                .filter(|ranked| window.distance(ranked.centre()) <= 0.5)
+                .map(|ranked| ranked.rank)
+                .collect();
+            assert_eq!(found.iter().map(|ranked| ranked.rank).collect::<Vec<_>>(), expected);
+            assert!(expected.len() > 100 && expected.len() < all.len() / 2);
+        }
     }
 }

@@ -13,6 +13,7 @@ use std::error::Error;
 use std::fs;
 use std::io::Write as _;
 
+use twelvefold::Tables;
 use twelvefold::tiling::Rules;
 
 use crate::args::FiguresOptions;
@@ -27,7 +28,7 @@ type Figure = (&'static str, fn(&Rules) -> Result<String>);
 
 const FIGURES: [Figure; 7] = [
     ("fig1.svg", tilings::tiling_and_dual),
-    ("fig2.svg", tilings::two_levels),
+    ("fig2.svg", tilings::two_levels_and_points),
     ("fig3.svg", rules::production_rules),
     ("fig4.svg", psi::psi),
     ("fig5.svg", ramp::ramp),
@@ -38,20 +39,23 @@ const FIGURES: [Figure; 7] = [
 /// Runs the subcommand.
 pub(crate) fn run(options: &FiguresOptions) -> std::result::Result<(), Failure> {
     let folder = &options.output;
-    let rules = crate::rules()?;
+    let tables = Tables::built_in();
     // All are drawn before any is written, so that a mistake leaves the folder as it was.
     let mut documents = Vec::new();
     for (name, draw) in FIGURES {
-        documents.push((name, draw(&rules).map_err(|error| Failure::about(name, error))?));
+        documents.push((name, draw(tables.rules()).map_err(|error| Failure::about(name, error))?));
     }
     fs::create_dir_all(folder).map_err(|error| Failure::at(folder, error))?;
+    // And all are written before any takes its place.
+    let mut outputs = Vec::new();
     for (name, document) in documents {
         let path = folder.join(name);
         let mut output = Output::create(&path).map_err(|error| Failure::at(&path, error))?;
-        output
-            .write_all(document.as_bytes())
-            .and_then(|()| output.commit())
-            .map_err(|error| Failure::at(&path, error))?;
+        output.write_all(document.as_bytes()).map_err(|error| Failure::at(&path, error))?;
+        outputs.push((path, output));
+    }
+    for (path, output) in outputs {
+        output.commit().map_err(|error| Failure::at(&path, error))?;
     }
     Ok(())
 }
