@@ -25,7 +25,7 @@ struct Found {
 /// Every point of the sampling as (rank, position), sorted by rank. The domain's corner must be 0.
 pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f64; 2])> {
     let placement = sampling.placement();
-    let rules = placement.tables().rules();
+    let rules = &placement.tables().rules();
     let domain = placement.domain();
     assert_eq!(domain.min(), DVec2::ZERO);
     let highest = sampling.rank_limit(sampling.importance().upper_bound(&domain.region()));
@@ -131,7 +131,7 @@ mod tests {
             let map = random_map(width, height, contrast, seed);
             prop_assume!(map.mean() > 0.0);
             for depth in 1..=bake::MAX_DEPTH {
-                let rules = *Tables::built_in().rules();
+                let rules = Tables::built_in().rules();
                 let bytes = bake::bake(&rules, depth).unwrap();
                 let tables = Tables::from_bytes(&bytes).unwrap();
                 let placement = Placement::with_tables(map.domain(), seed, tables);
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn the_frontier_is_every_tile_that_reaches_the_domain() {
         use crate::placement::{FRONTIER_LEVEL, REACH};
-        let rules = *Tables::built_in().rules();
+        let rules = Tables::built_in().rules();
         let mut level = alloc::vec![Tile::root(crate::tiling::TileType::A)];
         for _ in 0..FRONTIER_LEVEL {
             level = level

@@ -26,18 +26,18 @@ pub(crate) enum Command {
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
+    ///
+    /// The columns are fcode,tile,rotation,z0,z1,z2,z3,rank,threshold,x,y: the tile's address, newest
+    /// digit first; its type; its rotation in units of 30°, 0 to 11; its centre z0 + z1·ζ + z2·ζ² +
+    /// z3·ζ³, ζ = e^(iπ/6), in edges of its own level; its rank; rank over the number of tiles; and
+    /// the centre again in edges of the root. The root's centre is the origin. Tiles are listed depth
+    /// first, children by ascending digit.
     Tiling(TilingOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
 }
 
 /// Options of `twelvefold tiling`.
-///
-/// The columns are fcode,tile,rotation,z0,z1,z2,z3,rank,threshold,x,y: the tile's address, newest digit
-/// first; its type; its rotation in units of 30°, 0 to 11; its centre as z0 + z1·ζ + z2·ζ² + z3·ζ³ with
-/// ζ = e^(iπ/6), in edges of its own level; its rank; rank over the number of tiles; and the centre
-/// again in edges of the root. The root's centre is the origin. Tiles are listed depth first, children
-/// by ascending digit.
 #[derive(Debug, Args)]
 pub(crate) struct TilingOptions {
     /// The type of the root tile.
