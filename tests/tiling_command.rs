@@ -52,7 +52,7 @@ fn every_row_of_every_root_agrees_with_the_library() {
                 assert_eq!(fields.len(), 11, "{line}");
                 let code = FCode::parse(root, fields[0]).unwrap();
                 assert_eq!(code.level(), levels);
-                let tile = code.tile(tables.rules()).unwrap();
+                let tile = code.tile(&tables.rules()).unwrap();
                 assert_eq!(fields[1], tile.kind.letter().to_string(), "{line}");
                 assert_eq!(fields[2], tile.rotation.to_string(), "{line}");
                 let z = Cyclotomic(std::array::from_fn(|i| fields[3 + i].parse().unwrap()));

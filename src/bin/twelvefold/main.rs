@@ -2,10 +2,12 @@
 //! nothing, and this file is the only place that prints an error or chooses the exit code.
 
 mod args;
+mod drawing;
 mod failure;
 mod figures;
 mod output;
 mod picture;
+mod progress;
 mod stipple;
 mod tables;
 mod tiling;

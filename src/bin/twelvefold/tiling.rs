@@ -35,7 +35,7 @@ pub(crate) fn run(options: &TilingOptions) -> Result<(), Failure> {
 
 fn write_whole(root: TileType, levels: usize, output: Output) -> Result<(), OutputError> {
     let mut writer = BufWriter::with_capacity(1 << 16, output);
-    write_level(Tables::built_in().rules(), root, levels, &mut writer)?;
+    write_level(&Tables::built_in().rules(), root, levels, &mut writer)?;
     writer.into_inner().map_err(io::IntoInnerError::into_error)?.commit()
 }
 

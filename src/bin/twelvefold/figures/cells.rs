@@ -179,7 +179,7 @@ mod tests {
         let tables = twelvefold::Tables::built_in();
         // Inside 0.2929 of 52 edges, where all tiles descend from the root.
         let window = Window { centre: DVec2::new(2.5, -1.0), size: DVec2::new(13.0, 12.0) };
-        let tiles = tiles_in(tables.rules(), TileType::A, 3, &window, 2.0).unwrap();
+        let tiles = tiles_in(&tables.rules(), TileType::A, 3, &window, 2.0).unwrap();
 
         // Every edge of a cell in the window is the edge of one other cell, in the other direction.
         let key = |p: DVec2| p.to_array().map(|v| (v * 1e6).round() as i64);
@@ -210,8 +210,8 @@ mod tests {
         let tables = twelvefold::Tables::built_in();
         let window = Window { centre: DVec2::new(-9.0, 4.0), size: DVec2::new(7.0, 30.0) };
         for root in TileType::ALL {
-            let found = tiles_in(tables.rules(), root, 3, &window, 0.5).unwrap();
-            let all = tiles_of(tables.rules(), root, 3).unwrap();
+            let found = tiles_in(&tables.rules(), root, 3, &window, 0.5).unwrap();
+            let all = tiles_of(&tables.rules(), root, 3).unwrap();
             assert_eq!(all.len() as u64, TileCounts::of(root).at(3).unwrap());
             let expected: Vec<u64> = all
                 .iter()

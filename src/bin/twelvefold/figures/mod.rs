@@ -39,11 +39,11 @@ const FIGURES: [Figure; 7] = [
 /// Runs the subcommand.
 pub(crate) fn run(options: &FiguresOptions) -> std::result::Result<(), Failure> {
     let folder = &options.output;
-    let tables = Tables::built_in();
+    let rules = Tables::built_in().rules();
     // All are drawn before any is written, so that a mistake leaves the folder as it was.
     let mut documents = Vec::new();
     for (name, draw) in FIGURES {
-        documents.push((name, draw(tables.rules()).map_err(|error| Failure::about(name, error))?));
+        documents.push((name, draw(&rules).map_err(|error| Failure::about(name, error))?));
     }
     fs::create_dir_all(folder).map_err(|error| Failure::at(folder, error))?;
     // And all are written before any takes its place.

@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn every_sequence_fills_the_unit_square_in_the_order_of_its_thresholds() {
         let tables = twelvefold::Tables::built_in();
-        for points in [halton(), hammersley(), dodecagonal(tables.rules()).unwrap()] {
+        for points in [halton(), hammersley(), dodecagonal(&tables.rules()).unwrap()] {
             assert_eq!(points.len(), POINTS);
             let mut quadrants = [0; 4];
             for (point, threshold) in &points {

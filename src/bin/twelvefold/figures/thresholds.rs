@@ -216,7 +216,7 @@ mod tests {
         for (levels, window) in [(3, OUTER), (4, INNER), (5, INNER)] {
             let tiles = TileCounts::of(ROOT).at(levels).unwrap();
             let window = window.in_units_of(LAMBDA.powi(levels as i32));
-            let mut thresholds: Vec<f64> = tiles_in(tables.rules(), ROOT, levels, &window, 0.0)
+            let mut thresholds: Vec<f64> = tiles_in(&tables.rules(), ROOT, levels, &window, 0.0)
                 .unwrap()
                 .iter()
                 .map(|ranked| threshold(ranked, tiles))

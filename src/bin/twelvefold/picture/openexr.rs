@@ -107,7 +107,7 @@ fn take(
 /// Where in a [`Pixel`] the samples of `channel` belong, if anywhere.
 fn slot(channel: &ChannelDescription, colors: Colors) -> Option<usize> {
     let names: &[&str] = if colors == Colors::Gray { &["Y", "A"] } else { &["R", "G", "B", "A"] };
-    names.iter().position(|&name| channel.name == Text::from(name))
+    names.iter().position(|&name| channel.name == *name)
 }
 
 /// The layer to show, with its number and what its colours are.

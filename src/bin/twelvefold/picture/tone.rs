@@ -57,12 +57,13 @@ pub(super) trait Sample: Copy {
     fn index(self) -> Option<usize>;
 }
 
-macro_rules! integer_sample {
-    ($type:ty, $index:expr) => {
+macro_rules! sample {
+    ($type:ty, float: $float:literal, fraction: $fraction:expr, index: $index:expr) => {
         impl Sample for $type {
-            const FLOAT: bool = false;
+            const FLOAT: bool = $float;
             fn fraction(self) -> f64 {
-                self as f64 / <$type>::MAX as f64
+                let fraction: fn($type) -> f64 = $fraction;
+                fraction(self)
             }
             fn index(self) -> Option<usize> {
                 let index: fn($type) -> Option<usize> = $index;
@@ -71,28 +72,13 @@ macro_rules! integer_sample {
         }
     };
 }
-integer_sample!(u8, |sample| Some(usize::from(sample)));
-integer_sample!(u16, |sample| Some(usize::from(sample)));
-integer_sample!(u32, |_| None);
-integer_sample!(u64, |_| None);
-
-macro_rules! float_sample {
-    ($type:ty, $widen:expr) => {
-        impl Sample for $type {
-            const FLOAT: bool = true;
-            fn fraction(self) -> f64 {
-                let widen: fn($type) -> f64 = $widen;
-                widen(self)
-            }
-            fn index(self) -> Option<usize> {
-                None
-            }
-        }
-    };
-}
-float_sample!(exr::prelude::f16, |sample| sample.to_f64());
-float_sample!(f32, f64::from);
-float_sample!(f64, |sample| sample);
+sample!(u8, float: false, fraction: |s| f64::from(s) / 255.0, index: |s| Some(usize::from(s)));
+sample!(u16, float: false, fraction: |s| f64::from(s) / 65535.0, index: |s| Some(usize::from(s)));
+sample!(u32, float: false, fraction: |s| f64::from(s) / f64::from(u32::MAX), index: |_| None);
+sample!(u64, float: false, fraction: |s| s as f64 / u64::MAX as f64, index: |_| None);
+sample!(exr::prelude::f16, float: true, fraction: |s| s.to_f64(), index: |_| None);
+sample!(f32, float: true, fraction: f64::from, index: |_| None);
+sample!(f64, float: true, fraction: |s| s, index: |_| None);
 
 /// Turns the pixels of one file into importance.
 #[derive(Debug)]
