@@ -28,7 +28,7 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
     let rules = &placement.tables().rules();
     let domain = placement.domain();
     assert_eq!(domain.min(), DVec2::ZERO);
-    let highest = sampling.rank_limit(sampling.importance().upper_bound(&domain.region()));
+    let highest = sampling.scale().limit(sampling.importance().upper_bound(&domain.region()));
     let counts = TileCounts::HEXAGON.all();
     let level = (4..).find(|level| counts[*level] >= highest).unwrap();
 
@@ -43,10 +43,10 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
     for Found { rank, born, at_birth, .. } in found {
         let [x, y] = at_birth.to_surds().unwrap().map(|s| s.whole as f64 + SQRT_3 * s.root as f64);
         let h = placement.half_edge(born);
-        let at = placement.origin + DVec2::new(h.x * x + -h.y * y, h.y * x + h.x * y);
+        let at = placement.origin() + DVec2::new(h.x * x + -h.y * y, h.y * x + h.x * y);
         if domain.contains(at) {
             let value = sampling.importance().value(at);
-            if rank < sampling.rank_limit(value) {
+            if rank < sampling.scale().limit(value) {
                 points.push((rank, at.to_array()));
             }
         }
@@ -184,7 +184,7 @@ mod tests {
             };
             let first = by_rank(frontier[0].rank);
             let expected = frontier[0].centre;
-            let shift = placement.origin
+            let shift = placement.origin()
                 + 2.0
                     * h.rotate(DVec2::from(
                         from_exact(expected.u, expected.v, expected.p, expected.q).to_f64(),

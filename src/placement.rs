@@ -42,11 +42,11 @@ const INNER_RADIUS: f64 = 1.0 - REACH;
 pub struct Placement<'t> {
     domain: Domain,
     tables: Tables<'t>,
-    /// The number in [0, 1) that is added to every rank before it is compared.
-    pub(crate) rank_shift: f64,
+    /// In [0, 1), added to every rank before it is compared.
+    rank_shift: f64,
     frontier: [Option<Node>; MAX_FRONTIER],
     /// The reference tile's centre, relative to the domain's least corner.
-    pub(crate) origin: DVec2,
+    origin: DVec2,
     /// For each level: the vector of half an edge along the tiling's x axis.
     half_edges: [DVec2; MAX_LEVEL + 1],
     /// The area of the whole root in squared units.
@@ -156,6 +156,16 @@ impl<'t> Placement<'t> {
     /// The tiles at which walks start.
     pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
         self.frontier.iter().flatten()
+    }
+
+    /// The reference tile's centre, relative to the domain's least corner.
+    pub(crate) fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
+    /// The number in [0, 1) that is added to every rank before it is compared.
+    pub(crate) fn rank_shift(&self) -> f64 {
+        self.rank_shift
     }
 
     /// How many ranks correspond to one point a squared unit: the area of the root.

@@ -266,6 +266,18 @@ impl<'a> BlockTable<'a> {
         (u16::from_le_bytes(self.rank_a[i]), u16::from_le_bytes(self.rank_b[i]))
     }
 
+    /// [`rank_coefficients`](Self::rank_coefficients) of a run of entries.
+    pub(crate) fn rank_coefficients_of(
+        &self,
+        range: core::ops::Range<usize>,
+    ) -> impl Iterator<Item = (u16, u16)> + 'a {
+        let number = |bytes: &[u8; 2]| u16::from_le_bytes(*bytes);
+        self.rank_a[range.clone()]
+            .iter()
+            .zip(&self.rank_b[range])
+            .map(move |(a, b)| (number(a), number(b)))
+    }
+
     /// The offset of entry `i` < [`len`](Self::len), turned by `turn`·30°, `turn` in 0..3.
     pub(crate) fn offset(&self, turn: usize, i: usize) -> ExactPoint {
         let Offsets { u, v, p, q } = self.offsets[turn];

@@ -36,22 +36,14 @@ impl ExactPoint {
     }
 
     /// The sum.
+    #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {
-        self.each(other, |a, b| a + b)
+        Self { u: self.u + other.u, v: self.v + other.v, p: self.p + other.p, q: self.q + other.q }
     }
 
     /// The difference.
     pub(crate) fn minus(self, other: Self) -> Self {
-        self.each(other, |a, b| a - b)
-    }
-
-    fn each(self, other: Self, op: impl Fn(i32, i32) -> i32) -> Self {
-        Self {
-            u: op(self.u, other.u),
-            v: op(self.v, other.v),
-            p: op(self.p, other.p),
-            q: op(self.q, other.q),
-        }
+        self.plus(Self { u: -other.u, v: -other.v, p: -other.p, q: -other.q })
     }
 
     /// Rounded coordinates, in edges.
