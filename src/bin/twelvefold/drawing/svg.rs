@@ -141,7 +141,7 @@ mod tests {
                 let expected = format!("{value:.decimals$}");
                 // Halves may go either way.
                 let error = written.parse::<f64>().unwrap() - f64::from(value);
-                let nearest = error.abs() <= 0.50001 * 10f64.powi(-(decimals as i32));
+                let nearest = error.abs() <= 0.5 / unit + 1e-12;
                 assert!(written == expected || nearest, "{written} for {expected}");
                 assert_eq!(written.len(), expected.len());
             }
