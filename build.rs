@@ -18,13 +18,12 @@ mod bake;
 #[path = "src/tiling/mod.rs"]
 mod tiling;
 
-use std::path::Path;
 use std::process::ExitCode;
 
 const DIGITS: &str = "tables/digits.txt";
 
 fn main() -> ExitCode {
-    for input in ["build.rs", "src/tiling", "src/bake", "tables"] {
+    for input in ["build.rs", "src/tiling", "src/bake", "tables/digits.txt"] {
         println!("cargo::rerun-if-changed={input}");
     }
     println!("cargo::rerun-if-env-changed=TWELVEFOLD_DEPTH");
@@ -49,6 +48,9 @@ fn write_tables() -> Result<(), String> {
     let rules = tiling::Rules::new(&digits).map_err(|error| format!("{DIGITS}, {error}"))?;
     let bytes = bake::bake(&rules, depth).map_err(|error| format!("TWELVEFOLD_DEPTH: {error}"))?;
     let folder = std::env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run by cargo only")?;
-    let file = Path::new(&folder).join("tables.bin");
+    let folder = std::path::PathBuf::from(folder);
+    // Lets tests/build_script.rs find and run this very script.
+    println!("cargo::rustc-env=OUT_DIR_OF_BUILD={}", folder.display());
+    let file = folder.join("tables.bin");
     std::fs::write(&file, bytes).map_err(|error| format!("{}: {error}", file.display()))
 }

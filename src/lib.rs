@@ -4,6 +4,7 @@
 extern crate alloc;
 
 pub mod bake;
+mod clip;
 mod domain;
 pub mod importance;
 #[cfg(test)]

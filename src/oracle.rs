@@ -25,10 +25,10 @@ struct Found {
 /// Every point of the sampling as (rank, position), sorted by rank. The domain's corner must be 0.
 pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f64; 2])> {
     let placement = sampling.placement();
-    let rules = placement.tables().rules();
+    let rules = &placement.tables().rules();
     let domain = placement.domain();
     assert_eq!(domain.min(), DVec2::ZERO);
-    let highest = sampling.rank_limit(sampling.importance().upper_bound(&domain.region()));
+    let highest = sampling.scale().limit(sampling.importance().upper_bound(&domain.region()));
     let counts = TileCounts::HEXAGON.all();
     let level = (4..).find(|level| counts[*level] >= highest).unwrap();
 
@@ -43,10 +43,10 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
     for Found { rank, born, at_birth, .. } in found {
         let [x, y] = at_birth.to_surds().unwrap().map(|s| s.whole as f64 + SQRT_3 * s.root as f64);
         let h = placement.half_edge(born);
-        let at = placement.origin + DVec2::new(h.x * x + -h.y * y, h.y * x + h.x * y);
+        let at = placement.origin() + DVec2::new(h.x * x + -h.y * y, h.y * x + h.x * y);
         if domain.contains(at) {
             let value = sampling.importance().value(at);
-            if rank < sampling.rank_limit(value) {
+            if rank < sampling.scale().limit(value) {
                 points.push((rank, at.to_array()));
             }
         }
@@ -131,7 +131,7 @@ mod tests {
             let map = random_map(width, height, contrast, seed);
             prop_assume!(map.mean() > 0.0);
             for depth in 1..=bake::MAX_DEPTH {
-                let rules = *Tables::built_in().rules();
+                let rules = Tables::built_in().rules();
                 let bytes = bake::bake(&rules, depth).unwrap();
                 let tables = Tables::from_bytes(&bytes).unwrap();
                 let placement = Placement::with_tables(map.domain(), seed, tables);
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn the_frontier_is_every_tile_that_reaches_the_domain() {
         use crate::placement::{FRONTIER_LEVEL, REACH};
-        let rules = *Tables::built_in().rules();
+        let rules = Tables::built_in().rules();
         let mut level = alloc::vec![Tile::root(crate::tiling::TileType::A)];
         for _ in 0..FRONTIER_LEVEL {
             level = level
@@ -184,7 +184,7 @@ mod tests {
             };
             let first = by_rank(frontier[0].rank);
             let expected = frontier[0].centre;
-            let shift = placement.origin
+            let shift = placement.origin()
                 + 2.0
                     * h.rotate(DVec2::from(
                         from_exact(expected.u, expected.v, expected.p, expected.q).to_f64(),

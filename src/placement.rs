@@ -5,8 +5,9 @@ use glam::DVec2;
 use crate::domain::{Domain, Region};
 use crate::seed::SplitMix64;
 use crate::tables::Tables;
+use crate::tiling::MAX_LEVEL;
 use crate::tiling::cyclotomic::SQRT_3;
-use crate::tiling::{Cyclotomic, MAX_LEVEL, Tile, TileCounts, TileType};
+use crate::walk::leaf::tile_counts;
 use crate::walk::node::{ExactPoint, Node};
 
 /// The level of the few tiles at which every walk of a placement starts.
@@ -41,11 +42,11 @@ const INNER_RADIUS: f64 = 1.0 - REACH;
 pub struct Placement<'t> {
     domain: Domain,
     tables: Tables<'t>,
-    /// The number in [0, 1) that is added to every rank before it is compared.
-    pub(crate) rank_shift: f64,
+    /// In [0, 1), added to every rank before it is compared.
+    rank_shift: f64,
     frontier: [Option<Node>; MAX_FRONTIER],
     /// The reference tile's centre, relative to the domain's least corner.
-    pub(crate) origin: DVec2,
+    origin: DVec2,
     /// For each level: the vector of half an edge along the tiling's x axis.
     half_edges: [DVec2; MAX_LEVEL + 1],
     /// The area of the whole root in squared units.
@@ -92,62 +93,49 @@ impl<'t> Placement<'t> {
     /// Walks from the root to the tiles of the frontier level whose descendants can reach the domain,
     /// whose centre is `centre` in root edges.
     fn find_frontier(&mut self, centre: DVec2) {
-        let mut found = [(Tile::root(TileType::A), 0u64); MAX_FRONTIER];
         let mut count = 0;
-        let mut nearest = (f64::INFINITY, Tile::root(TileType::A));
+        let mut nearest = (f64::INFINITY, ExactPoint::default());
         // Depth first; at most 13 siblings wait on each of the levels above the frontier.
-        let mut stack = [(Tile::root(TileType::A), 0u8, 0u64); 14 * FRONTIER_LEVEL as usize];
+        let mut stack = [Node::root(); 14 * FRONTIER_LEVEL as usize];
         let mut waiting = 1;
         while waiting > 0 {
             waiting -= 1;
-            let (tile, level, rank) = stack[waiting];
+            let node = stack[waiting];
             // Everything in edges of this level.
-            let to_domain = centre * lambda_power(level.into()) - DVec2::from(tile.centre.to_f64());
+            let to_domain = centre * lambda_power(node.level.into()) - node.centre.to_dvec2();
             let half_diagonal =
-                0.5 / FRONTIER_EDGE / lambda_power(usize::from(FRONTIER_LEVEL - level));
+                0.5 / FRONTIER_EDGE / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
             if to_domain.length() > REACH + half_diagonal + 1e-9 {
                 continue;
             }
-            if level == FRONTIER_LEVEL {
+            if node.level == FRONTIER_LEVEL {
                 if to_domain.length() < nearest.0 {
-                    nearest = (to_domain.length(), tile);
+                    nearest = (to_domain.length(), node.centre);
                 }
                 debug_assert!(count < MAX_FRONTIER, "the packing bound of MAX_FRONTIER");
-                if count < MAX_FRONTIER {
-                    found[count] = (tile, rank);
+                if let Some(slot) = self.frontier.get_mut(count) {
+                    *slot = Some(node);
                     count += 1;
                 }
                 continue;
             }
-            let counts = TileCounts::HEXAGON.all();
-            let tiles = counts[usize::from(level)];
-            let before = if level == 0 { 1 } else { counts[usize::from(level) - 1] };
-            for digit in (0..tile.kind.child_count()).rev() {
-                let (a, b) = self.tables.block(tile.kind).rank_coefficients(digit);
-                let child = self.tables.rules().child_of(&tile, digit as u8);
-                // Coordinates of level 4 are far from the end of i64.
-                let Ok(Some(child)) = child else { continue };
-                let rank = rank + u64::from(a) * tiles - u64::from(b) * before;
-                stack[waiting] = (child, level + 1, rank);
-                waiting += 1;
+            let (tiles, before) = tile_counts(node.level);
+            for digit in (0..node.kind.child_count()).rev() {
+                if let Some(child) = node.child(&self.tables, digit, tiles, before) {
+                    stack[waiting] = child;
+                    waiting += 1;
+                }
             }
         }
 
+        // From here on, coordinates are relative to the tile nearest to the domain's centre.
         let (_, reference) = nearest;
-        for (slot, (tile, rank)) in self.frontier.iter_mut().zip(&found[..count]) {
-            let centre = relative(tile.centre, reference.centre);
-            *slot = Some(Node {
-                kind: tile.kind,
-                rotation: tile.rotation,
-                level: FRONTIER_LEVEL,
-                born: FRONTIER_LEVEL,
-                centre,
-                centre_at_birth: centre,
-                rank: *rank,
-            });
+        for node in self.frontier.iter_mut().flatten() {
+            node.centre = node.centre.minus(reference);
+            (node.born, node.centre_at_birth) = (node.level, node.centre);
         }
         let level = usize::from(FRONTIER_LEVEL);
-        let from_domain = DVec2::from(reference.centre.to_f64()) - centre * lambda_power(level);
+        let from_domain = reference.to_dvec2() - centre * lambda_power(level);
         let edge = 2.0 * self.half_edges[level];
         // + 0.0 turns a −0.0 into 0.0, so that sums do not depend on the sign of a zero term.
         self.origin = 0.5 * self.domain.size() + edge.rotate(from_domain) + 0.0;
@@ -170,6 +158,16 @@ impl<'t> Placement<'t> {
         self.frontier.iter().flatten()
     }
 
+    /// The reference tile's centre, relative to the domain's least corner.
+    pub(crate) fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
+    /// The number in [0, 1) that is added to every rank before it is compared.
+    pub(crate) fn rank_shift(&self) -> f64 {
+        self.rank_shift
+    }
+
     /// How many ranks correspond to one point a squared unit: the area of the root.
     pub(crate) fn ranks_per_density(&self) -> f64 {
         self.root_area
@@ -183,9 +181,7 @@ impl<'t> Placement<'t> {
     /// A disc, in units, that holds all descendants of a node, as computed in either precision.
     pub(crate) fn region(&self, node: &Node) -> Region {
         let half_edge = self.half_edge(node.level);
-        let ExactPoint { u, v, p, q } = node.centre;
-        let doubled =
-            DVec2::new(f64::from(u) + SQRT_3 * f64::from(v), f64::from(p) + SQRT_3 * f64::from(q));
+        let doubled = 2.0 * node.centre.to_dvec2();
         let edge = 2.0 * half_edge.length();
         Region {
             centre: self.domain.min() + (self.origin + half_edge.rotate(doubled)),
@@ -207,20 +203,4 @@ fn lambda_power(n: usize) -> f64 {
 /// Frontier edges in a root edge, λ⁴.
 fn frontier_edges_per_root() -> f64 {
     lambda_power(FRONTIER_LEVEL.into())
-}
-
-/// `tile` − `reference`: a few edges for two frontier tiles of one placement.
-fn relative(tile: Cyclotomic, reference: Cyclotomic) -> ExactPoint {
-    let difference = tile.checked_sub(reference).and_then(Cyclotomic::to_surds);
-    let small = |n: i64| i32::try_from(n).unwrap_or(0);
-    // Coordinates of level 4 are far from the end of i64, and of i32.
-    difference.map_or_else(
-        |_| ExactPoint::default(),
-        |[x, y]| ExactPoint {
-            u: small(x.whole),
-            v: small(x.root),
-            p: small(y.whole),
-            q: small(y.root),
-        },
-    )
 }

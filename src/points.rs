@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
+use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
-use crate::sampling::{Clip, Sampling, SamplingError, representable};
-use crate::walk::chunk::Chunk;
+use crate::sampling::{Sampling, SamplingError};
+use crate::walk::chunk::{CHUNK, Chunk};
 use crate::walk::leaf::Leaf;
 use crate::walk::scalar::{Position, Scalar};
 use crate::walk::traverse::Traversal;
@@ -42,15 +43,13 @@ pub struct Points<'a, I, P: Position> {
     chunk: Chunk<P::Scalar>,
     /// The next point of the chunk.
     next: usize,
-    x_range: (P::Scalar, P::Scalar),
-    y_range: (P::Scalar, P::Scalar),
+    to_caller: ToCaller<P::Scalar>,
     failed: bool,
 }
 
 impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
         let domain = sampling.placement().domain();
-        let (min, max) = (domain.min(), domain.max());
         Ok(Self {
             traversal: Traversal::new(&sampling, Clip::domain(&domain)),
             sampling,
@@ -58,8 +57,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
             candidate: 0,
             chunk: Chunk::new(),
             next: 0,
-            x_range: representable(min.x, max.x).ok_or(SamplingError::Precision)?,
-            y_range: representable(min.y, max.y).ok_or(SamplingError::Precision)?,
+            to_caller: ToCaller::new(&domain)?,
             failed: false,
         })
     }
@@ -79,7 +77,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
             };
             let placement = self.sampling.placement();
             self.candidate = leaf.fill_chunk(placement, self.candidate, &mut self.chunk);
-            self.accept(&leaf)?;
+            accept(&self.sampling, &leaf, &mut self.chunk)?;
             if self.chunk.len > 0 {
                 self.next = 0;
                 return Ok(true);
@@ -87,48 +85,40 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
         }
     }
 
-    /// Keeps the candidates that lie in the domain and whose importance reaches their rank.
-    fn accept(&mut self, leaf: &Leaf) -> Result<(), SamplingError> {
-        let domain = self.sampling.placement().domain();
-        if !leaf.inside {
-            let [width, height] = domain.size().to_array().map(P::Scalar::from_f64);
-            let zero = P::Scalar::default();
-            self.chunk.retain(|x, y, _| {
-                Ok::<_, SamplingError>(zero <= x && x < width && zero <= y && y < height)
-            })?;
-        }
-        if !leaf.all_accepted {
-            let sampling = &self.sampling;
-            self.chunk.retain(|x, y, rank| {
-                let at = domain.min() + DVec2::new(x.to_f64(), y.to_f64());
-                let value = sampling.importance().value(at);
-                if !(value >= 0.0 && value <= leaf.bound) {
-                    return Err(SamplingError::InvalidValue { at, value, bound: leaf.bound });
-                }
-                Ok(rank < sampling.rank_limit(value))
-            })?;
-        }
-        Ok(())
-    }
-
     /// Point `i` of the chunk in the caller's coordinates.
     fn sample(&self, i: usize) -> Sample<P> {
-        let min = self.sampling.placement().domain().min();
-        // Rounding may carry a coordinate past the border it is inside of.
-        let place = |offset: P::Scalar, min: f64, (low, high): (P::Scalar, P::Scalar)| {
-            let sum = P::Scalar::from_f64(min) + offset;
-            if sum < low {
-                low
-            } else if sum > high {
-                high
-            } else {
-                sum
-            }
-        };
-        let x = place(self.chunk.x[i], min.x, self.x_range);
-        let y = place(self.chunk.y[i], min.y, self.y_range);
-        Sample { position: P::from_xy(x, y), rank: self.chunk.ranks[i] }
+        let position = self.to_caller.place(self.chunk.x[i], self.chunk.y[i]);
+        Sample { position, rank: self.chunk.ranks[i] }
     }
+}
+
+/// Keeps the candidates that lie in the domain and whose importance reaches their rank.
+pub(crate) fn accept<I: Importance, S: Scalar>(
+    sampling: &Sampling<'_, I>,
+    leaf: &Leaf,
+    chunk: &mut Chunk<S>,
+) -> Result<(), SamplingError> {
+    let domain = sampling.placement().domain();
+    if !leaf.inside {
+        let [width, height] = domain.size().to_array().map(S::from_f64);
+        chunk.retain_inside(width, height);
+    }
+    if leaf.all_accepted {
+        return Ok(());
+    }
+    let len = chunk.len;
+    let mut values = [0.0; CHUNK];
+    let values_here = &mut values[..len];
+    sampling.importance().values(domain.min(), &chunk.x[..len], &chunk.y[..len], values_here);
+    // One comparison that is false for NaN, so that no broken promise passes.
+    let broken = |value: &f64| !(*value >= 0.0 && *value <= leaf.bound);
+    if values_here.iter().any(broken) {
+        let i = values_here.iter().position(broken).unwrap_or(0);
+        let at = domain.min() + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+        return Err(SamplingError::InvalidValue { at, value: values[i], bound: leaf.bound });
+    }
+    chunk.retain_accepted(&values, sampling.scale());
+    Ok(())
 }
 
 impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {

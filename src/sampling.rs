@@ -5,12 +5,12 @@ use core::ops::ControlFlow;
 
 use glam::DVec2;
 
-use crate::domain::{Domain, Region};
+use crate::domain::Region;
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::points::{Filled, Points, Sample};
 use crate::tiling::{MAX_LEVEL, TileCounts};
-use crate::walk::scalar::{Position, Scalar};
+use crate::walk::{self, scalar::Position};
 
 /// How many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,8 +134,7 @@ impl core::error::Error for SamplingError {}
 pub struct Sampling<'a, I> {
     placement: &'a Placement<'a>,
     importance: &'a I,
-    /// Rank units for importance 1.
-    magnification: f64,
+    scale: RankScale,
     expected: Option<f64>,
     limits: Limits,
 }
@@ -190,7 +189,10 @@ impl<'a, I: Importance> Sampling<'a, I> {
         let sampling = Self {
             placement,
             importance,
-            magnification: density * placement.ranks_per_density(),
+            scale: RankScale {
+                magnification: density * placement.ranks_per_density(),
+                shift: placement.rank_shift(),
+            },
             expected,
             limits,
         };
@@ -231,19 +233,15 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// Points expected in a squared unit where the importance is 1.
     #[must_use]
     pub fn density(&self) -> f64 {
-        self.magnification / self.placement.ranks_per_density()
+        self.scale.magnification / self.placement.ranks_per_density()
     }
 
-    /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
-    /// k + u < T. Exact for the T that `f64` holds.
-    pub(crate) fn rank_limit(&self, value: f64) -> u64 {
-        let limit = value * self.magnification - self.placement.rank_shift;
-        // Truncation takes NaN and negative numbers to 0 and saturates above.
-        let whole = limit as u64;
-        whole.saturating_add(u64::from((whole as f64) < limit))
+    /// From importance to ranks.
+    pub(crate) fn scale(&self) -> RankScale {
+        self.scale
     }
 
-    /// The same for an upper bound, which need not be one that the library computed.
+    /// The number of ranks that an upper bound admits; it need not be one that the library computed.
     pub(crate) fn rank_limit_of_bound(
         &self,
         bound: f64,
@@ -252,7 +250,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
         if !(bound >= 0.0 && bound.is_finite()) {
             return Err(SamplingError::InvalidBound { near: region.centre, bound });
         }
-        let limit = self.rank_limit(bound);
+        let limit = self.scale.limit(bound);
         let deepest = TileCounts::HEXAGON.all()[MAX_LEVEL];
         if limit > deepest {
             return Err(SamplingError::TooDense { near: region.centre });
@@ -279,20 +277,15 @@ impl<'a, I: Importance> Sampling<'a, I> {
         Ok(())
     }
 
-    /// Writes positions into the caller's buffer until it is full. Allocates nothing.
+    /// Writes positions into the caller's buffer, in the order of the walk, until it is full.
+    /// Allocates nothing.
+    ///
+    /// The fastest way: ground of constant importance is copied from the tables block by block.
     ///
     /// # Errors
-    /// As [`visit`](Self::visit).
+    /// As [`visit`](Self::visit); the buffer then holds some of the points.
     pub fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
-        let mut points = self.points()?;
-        for (written, slot) in buffer.iter_mut().enumerate() {
-            match points.next() {
-                Some(sample) => *slot = sample?.position,
-                None => return Ok(Filled { written, complete: true }),
-            }
-        }
-        let complete = points.next().transpose()?.is_none();
-        Ok(Filled { written: buffer.len(), complete })
+        walk::fill::fill(self, buffer)
     }
 
     /// An iterator over the points. It holds its state (some 20 KiB) itself and allocates nothing.
@@ -304,40 +297,32 @@ impl<'a, I: Importance> Sampling<'a, I> {
     }
 }
 
-/// The part of the plane from which points are taken: a domain, half-open.
+/// From importance to ranks: T = importance · magnification, and rank k is accepted iff k + u < T.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Clip {
-    pub(crate) min: DVec2,
-    pub(crate) max: DVec2,
+pub(crate) struct RankScale {
+    /// Rank units for importance 1.
+    magnification: f64,
+    /// u, in [0, 1).
+    shift: f64,
 }
 
-impl Clip {
-    pub(crate) fn domain(domain: &Domain) -> Self {
-        Self { min: domain.min(), max: domain.max() }
+impl RankScale {
+    /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
+    /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
+    pub(crate) fn limit(self, value: f64) -> u64 {
+        let limit = value * self.magnification - self.shift;
+        // Truncation takes NaN and negative numbers to 0 and saturates above.
+        let whole = limit as u64;
+        whole.saturating_add(u64::from((whole as f64) < limit))
     }
 
-    /// Whether the disc may hold a point of the rectangle.
-    pub(crate) fn touches(&self, region: &Region) -> bool {
-        let nearest = region.centre.clamp(self.min, self.max);
-        nearest.distance_squared(region.centre) <= region.radius * region.radius
+    /// `rank < limit(value)`, for a rank below 2⁶³.
+    #[inline(always)]
+    pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {
+        let limit = value * self.magnification - self.shift;
+        // An integer below 2⁵³ is exact as f64, so that comparing there is comparing the integers:
+        // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbour, but so coarse a
+        // limit is an integer itself.
+        if rank < 1 << 53 { (rank as i64 as f64) < limit } else { rank < self.limit(value) }
     }
-
-    /// Whether the disc lies in the rectangle.
-    pub(crate) fn holds(&self, region: &Region) -> bool {
-        let (low, high) = (region.centre - region.radius, region.centre + region.radius);
-        low.cmpge(self.min).all() && high.cmplt(self.max).all()
-    }
-}
-
-/// The closed range of numbers of a precision inside a half-open interval, if there are any.
-pub(crate) fn representable<S: Scalar>(min: f64, max: f64) -> Option<(S, S)> {
-    let mut low = S::from_f64(min);
-    if low.to_f64() < min {
-        low = low.next_up();
-    }
-    let mut high = S::from_f64(max);
-    while high.to_f64() >= max {
-        high = high.next_down();
-    }
-    (low <= high).then_some((low, high))
 }

@@ -83,7 +83,7 @@ impl core::error::Error for TablesError {}
 pub struct Tables<'a> {
     bytes: &'a [u8],
     depth: u8,
-    rules: Rules,
+    digits: Digits,
     /// Type and rotation of each child, by parent type and digit.
     child_kinds: [[(TileType, u8); MAX_CHILDREN]; 4],
     blocks: [BlockTable<'a>; 4],
@@ -108,19 +108,17 @@ impl<'a> Tables<'a> {
     /// [`TablesError`] for anything that [`bake`](crate::bake::bake) would not have written: a changed,
     /// missing or added byte included.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, TablesError> {
-        let (document, intact) =
-            wire::split_checksum(bytes).ok_or(TablesError::Truncated { length: bytes.len() })?;
+        let document =
+            wire::without_checksum(bytes).ok_or(TablesError::Truncated { length: bytes.len() })?;
         if !document.starts_with(&wire::MAGIC) {
             return Err(TablesError::NotATableFile);
         }
-        if !intact {
+        if !wire::is_intact(bytes) {
             return Err(TablesError::Checksum);
         }
         let tables = Self::view(bytes)?;
-        let blocks =
-            bake::blocks(&tables.rules, tables.depth).map_err(|_| TablesError::Malformed)?;
-        let baked = wire::encode(tables.rules.digits(), tables.depth, &blocks)
-            .map_err(|_| TablesError::Malformed)?;
+        let rules = Rules::new(&tables.digits).map_err(TablesError::Digits)?;
+        let baked = bake::bake(&rules, tables.depth).map_err(|_| TablesError::Malformed)?;
         if baked != bytes {
             let expected = Tables::view(&baked)?;
             for kind in TileType::ALL {
@@ -135,9 +133,9 @@ impl<'a> Tables<'a> {
 
     /// Everything but the checksum and the comparison with the rules.
     fn view(bytes: &'a [u8]) -> Result<Self, TablesError> {
-        let (document, _) =
-            wire::split_checksum(bytes).ok_or(TablesError::Truncated { length: bytes.len() })?;
-        let Document { magic: _, version, depth, phases, digits, blocks } =
+        let document =
+            wire::without_checksum(bytes).ok_or(TablesError::Truncated { length: bytes.len() })?;
+        let Document { magic: _, version, depth, phases, digits, children, blocks } =
             wire::decode(document).ok_or(TablesError::Malformed)?;
         if version != wire::VERSION {
             return Err(TablesError::Version { found: version, expected: wire::VERSION });
@@ -148,18 +146,18 @@ impl<'a> Tables<'a> {
         if phases != 0 {
             return Err(TablesError::Phases { phases });
         }
-        let rules =
-            Rules::new(&Digits::from_derivation_order(digits)).map_err(TablesError::Digits)?;
         let [a, b, c, d] = TileType::ALL.map(|kind| {
             BlockTable::new(blocks[kind.index()], kind, depth).ok_or(TablesError::Block { kind })
         });
         let mut child_kinds = [[(TileType::A, 0); MAX_CHILDREN]; 4];
-        for (row, parent) in child_kinds.iter_mut().zip(TileType::ALL) {
-            for (slot, child) in row.iter_mut().zip(rules.children(parent)) {
-                *slot = (child.kind, child.rotation);
+        for (kinds, row) in child_kinds.iter_mut().zip(children) {
+            for (kind, (index, rotation)) in kinds.iter_mut().zip(row) {
+                let child = TileType::ALL.get(usize::from(index)).ok_or(TablesError::Malformed)?;
+                *kind = (*child, rotation % 12);
             }
         }
-        Ok(Self { bytes, depth, rules, child_kinds, blocks: [a?, b?, c?, d?] })
+        let digits = Digits::from_derivation_order(digits);
+        Ok(Self { bytes, depth, digits, child_kinds, blocks: [a?, b?, c?, d?] })
     }
 
     /// The bytes of the table file.
@@ -180,10 +178,11 @@ impl<'a> Tables<'a> {
         MAX_LEVEL
     }
 
-    /// The production rules with their digits.
+    /// The production rules with their digits. Derived anew, some microseconds.
     #[must_use]
-    pub fn rules(&self) -> &Rules {
-        &self.rules
+    pub fn rules(&self) -> Rules {
+        // `from_bytes` and build.rs have checked the digits.
+        Rules::new(&self.digits).unwrap_or_else(|_| unreachable!("tables with unchecked digits"))
     }
 
     /// Type and relative rotation of each child, by digit.
@@ -265,6 +264,18 @@ impl<'a> BlockTable<'a> {
     /// (A, B) of entry `i`: its rank is r + A·N_m − B·N_{m−1}. `i` < [`len`](Self::len).
     pub(crate) fn rank_coefficients(&self, i: usize) -> (u16, u16) {
         (u16::from_le_bytes(self.rank_a[i]), u16::from_le_bytes(self.rank_b[i]))
+    }
+
+    /// [`rank_coefficients`](Self::rank_coefficients) of a run of entries.
+    pub(crate) fn rank_coefficients_of(
+        &self,
+        range: core::ops::Range<usize>,
+    ) -> impl Iterator<Item = (u16, u16)> + 'a {
+        let number = |bytes: &[u8; 2]| u16::from_le_bytes(*bytes);
+        self.rank_a[range.clone()]
+            .iter()
+            .zip(&self.rank_b[range])
+            .map(move |(a, b)| (number(a), number(b)))
     }
 
     /// The offset of entry `i` < [`len`](Self::len), turned by `turn`·30°, `turn` in 0..3.

@@ -53,7 +53,7 @@ impl core::error::Error for BakeError {}
 /// [`BakeError::Depth`] for a depth outside 1..=[`MAX_DEPTH`].
 pub fn bake(rules: &Rules, depth: u8) -> Result<Vec<u8>, BakeError> {
     let blocks = blocks(rules, depth)?;
-    wire::encode(rules.digits(), depth, &blocks)
+    wire::encode(rules, depth, &blocks)
 }
 
 /// The blocks of all four types.

@@ -10,7 +10,7 @@ use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
 use serde::{Deserialize, Serialize};
 
 use super::{BakeError, block::Block};
-use crate::tiling::Digits;
+use crate::tiling::{Rules, TileType};
 
 /// First bytes of every table file.
 pub(crate) const MAGIC: [u8; 8] = *b"12fold\r\n";
@@ -38,6 +38,8 @@ pub(crate) struct Document<'a> {
     pub(crate) phases: u16,
     /// The digit assignment, a row a parent type, in derivation order.
     pub(crate) digits: [[u8; 14]; 4],
+    /// (type, rotation in units of 30°) of each child, a row a parent type, by digit; 0 past the last.
+    pub(crate) children: [[(u8, u8); 14]; 4],
     #[serde(borrow)]
     pub(crate) blocks: [BlockBytes<'a>; 4],
 }
@@ -95,19 +97,22 @@ impl BlockColumns {
 }
 
 /// Encodes blocks of the given depth.
-pub(crate) fn encode(
-    digits: &Digits,
-    depth: u8,
-    blocks: &[Block; 4],
-) -> Result<Vec<u8>, BakeError> {
+pub(crate) fn encode(rules: &Rules, depth: u8, blocks: &[Block; 4]) -> Result<Vec<u8>, BakeError> {
     let [a, b, c, d] = blocks.each_ref().map(|block| BlockColumns::new(block, depth));
     let columns = [a?, b?, c?, d?];
+    let mut children = [[(0, 0); 14]; 4];
+    for (row, parent) in children.iter_mut().zip(TileType::ALL) {
+        for (slot, child) in row.iter_mut().zip(rules.children(parent)) {
+            *slot = (child.kind as u8, child.rotation);
+        }
+    }
     let document = Document {
         magic: MAGIC,
         version: VERSION,
         depth,
         phases: 0,
-        digits: digits.derivation_order(),
+        digits: rules.digits().derivation_order(),
+        children,
         blocks: columns.each_ref().map(BlockColumns::as_bytes),
     };
     let mut bytes =
@@ -116,11 +121,15 @@ pub(crate) fn encode(
     Ok(bytes)
 }
 
-/// Splits off the checksum: the document's bytes, and whether the checksum is theirs.
-pub(crate) fn split_checksum(bytes: &[u8]) -> Option<(&[u8], bool)> {
-    let (document, stored) = bytes.split_at_checked(bytes.len().checked_sub(CRC_BYTES)?)?;
-    let stored = u32::from_le_bytes(stored.try_into().ok()?);
-    Some((document, crc32fast::hash(document) == stored))
+/// The document's bytes, without the checksum at the end.
+pub(crate) fn without_checksum(bytes: &[u8]) -> Option<&[u8]> {
+    bytes.get(..bytes.len().checked_sub(CRC_BYTES)?)
+}
+
+/// Whether the checksum at the end is that of the document before it.
+pub(crate) fn is_intact(bytes: &[u8]) -> bool {
+    without_checksum(bytes)
+        .is_some_and(|document| bytes[document.len()..] == crc32fast::hash(document).to_le_bytes())
 }
 
 /// Decodes a document without its checksum, borrowing its arrays. `None` when the bytes are no

@@ -13,8 +13,10 @@ pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
 
-use crate::domain::{Domain, Region};
 use glam::DVec2;
+
+use crate::domain::{Domain, Region};
+use crate::walk::scalar::Scalar;
 
 /// A density of points to follow, known at each point and bounded over each disc.
 ///
@@ -28,6 +30,18 @@ pub trait Importance {
     /// A number that [`value`](Self::value) does not exceed anywhere in the part of `region` that lies
     /// in the domain. The closer, the less work; it may not be below.
     fn upper_bound(&self, region: &Region) -> f64;
+
+    /// [`value`](Self::value) at each point `origin + (x[i], y[i])`, all of one length. Worth overriding
+    /// where many at once are cheaper; the numbers must be the same.
+    #[inline]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64])
+    where
+        Self: Sized,
+    {
+        for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
+            *value = self.value(origin + DVec2::new(x.to_f64(), y.to_f64()));
+        }
+    }
 
     /// The integral over the domain, in importance × squared units, if it is known.
     fn integral(&self, domain: &Domain) -> Option<f64> {

@@ -1,7 +1,10 @@
 //! A tile on the way: exact coordinates relative to the placement, and its rank.
 
+use glam::DVec2;
+
 use crate::tables::Tables;
 use crate::tiling::TileType;
+use crate::tiling::cyclotomic::SQRT_3;
 
 /// ((u + v√3)/2, (p + q√3)/2): an exact point, in edges of some level, relative to the placement's
 /// reference tile. 32 bits hold it: a domain is at most 2²⁴ edges of level 16 wide (see
@@ -33,8 +36,20 @@ impl ExactPoint {
     }
 
     /// The sum.
+    #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {
         Self { u: self.u + other.u, v: self.v + other.v, p: self.p + other.p, q: self.q + other.q }
+    }
+
+    /// The difference.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        self.plus(Self { u: -other.u, v: -other.v, p: -other.p, q: -other.q })
+    }
+
+    /// Rounded coordinates, in edges.
+    pub(crate) fn to_dvec2(self) -> DVec2 {
+        let [u, v, p, q] = [self.u, self.v, self.p, self.q].map(f64::from);
+        0.5 * DVec2::new(u + SQRT_3 * v, p + SQRT_3 * q)
     }
 }
 
@@ -57,6 +72,19 @@ pub(crate) struct Node {
 }
 
 impl Node {
+    /// The root `a`, unrotated at the origin.
+    pub(crate) fn root() -> Self {
+        Self {
+            kind: TileType::A,
+            rotation: 0,
+            level: 0,
+            born: 0,
+            centre: ExactPoint::default(),
+            centre_at_birth: ExactPoint::default(),
+            rank: 0,
+        }
+    }
+
     /// The child with this digit, or `None` if there is none. `tiles` and `tiles_before` are N_m and
     /// N_{m−1} of this node's level.
     pub(crate) fn child(

@@ -7,9 +7,10 @@
 
 use super::leaf::{Leaf, count_below, levels_below, tile_counts};
 use super::node::Node;
+use crate::clip::Clip;
 use crate::importance::Importance;
 use crate::placement::FRONTIER_LEVEL;
-use crate::sampling::{Clip, Sampling, SamplingError};
+use crate::sampling::{Sampling, SamplingError};
 use crate::tiling::MAX_LEVEL;
 
 /// Waiting nodes: at most 13 siblings on each level below the frontier, and the frontier.

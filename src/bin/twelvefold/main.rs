@@ -4,11 +4,13 @@
 mod args;
 mod drawing;
 mod failure;
+mod figures;
 mod output;
 mod picture;
 mod progress;
 mod stipple;
 mod tables;
+mod tiling;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -33,5 +35,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
         Command::Tables => tables::run(),
+        Command::Tiling(options) => tiling::run(options),
+        Command::Figures(options) => figures::run(options),
     }
 }
