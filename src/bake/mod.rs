@@ -1,0 +1,4 @@
+//! From rules to baked bytes.
+
+pub mod class;
+pub mod relaxation;
