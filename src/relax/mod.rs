@@ -7,10 +7,15 @@
 //!   baked.
 
 pub mod field;
+pub mod force;
 pub mod ground;
+pub mod patch;
 pub mod random;
 pub mod report;
+pub mod schedule;
 pub mod site;
+pub mod table;
+pub mod train;
 
 pub use field::Field;
 pub use ground::{Ground, Region};
