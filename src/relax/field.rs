@@ -65,6 +65,8 @@ pub struct Image {
 /// How an image is read; radii in spacings of the local density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageRules {
+    /// acceptance averaging
+    pub accept_radius: f64,
     /// Half-side of the box over which the phase's importance is averaged.
     pub phase_radius: f64,
     /// Half-side of the box whose contrast ln(max/min) decides on the rough layer.
@@ -77,7 +79,7 @@ pub struct ImageRules {
 
 impl Default for ImageRules {
     fn default() -> Self {
-        Self { phase_radius: 1.0, contrast_radius: 1.0, contrast_from: 0.07, contrast_to: 0.6 }
+        Self { accept_radius: 0.0, phase_radius: 1.0, contrast_radius: 1.0, contrast_from: 0.07, contrast_to: 0.6 }
     }
 }
 
@@ -168,11 +170,21 @@ impl Image {
 
 impl Field for Image {
     fn threshold(&self, p: DVec2) -> f64 {
-        self.bilinear(self.pixels(p)) * self.threshold_of_one
+        let t = self.bilinear(self.pixels(p)) * self.threshold_of_one;
+        if self.rules.accept_radius == 0.0 {
+            return t;
+        }
+        let half = spacing(t.max(1.0)) * self.rules.accept_radius * self.scale;
+        let (mut sum, mut area) = (0.0, 0.0);
+        for (value, covered) in self.covered(self.pixels(p), half) {
+            sum += value * covered;
+            area += covered;
+        }
+        sum / area * self.threshold_of_one
     }
 
     fn bound(&self, p: DVec2, radius: f64) -> f64 {
-        let (pixel, radius) = (self.pixels(p), radius * self.scale + 1.0);
+        let (pixel, radius) = (self.pixels(p), radius * self.scale + 1.0 + 40.0 * self.rules.accept_radius);
         let mut k = 0;
         while k + 1 < self.maxima.len() && f64::from(1u32 << k) < radius {
             k += 1;

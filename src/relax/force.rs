@@ -115,6 +115,14 @@ impl Points {
         }
     }
 
+    /// Moves the centres by vectors in the grandparents' frames, in edges: a part that is not trained.
+    pub fn displace(&mut self, vector: impl Fn(usize) -> Vec2) {
+        for (i, (centre, f)) in self.centres.iter_mut().zip(&self.frames).enumerate() {
+            let v = vector(i);
+            *centre += Vec2::new(f.x * v.x - f.y * v.y, f.y * v.x + f.x * v.y);
+        }
+    }
+
     /// How many points there are.
     #[must_use]
     pub fn len(&self) -> usize {

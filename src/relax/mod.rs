@@ -9,6 +9,7 @@
 pub mod field;
 pub mod force;
 pub mod ground;
+pub mod motif;
 pub mod patch;
 pub mod random;
 pub mod report;

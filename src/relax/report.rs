@@ -103,12 +103,12 @@ pub fn test_image() -> Vec<f32> {
             };
             if y < 512.0 {
                 gradient
-            } else if x < 384.0 {
-                if disc(192.0, 768.0, 160.0) != disc(240.0, 720.0, 60.0) { 1.0 } else { 0.25 }
-            } else if x < 704.0 {
+            } else if x < 512.0 {
+                if disc(256.0, 768.0, 220.0) != disc(320.0, 700.0, 90.0) { 1.0 } else { 0.25 }
+            } else if x < 768.0 {
                 if ((x / 10.0) as u32 + (y / 10.0) as u32).is_multiple_of(2) { 0.9 } else { 0.3 }
             } else {
-                0.1 + 0.9 * noise
+                0.3 + 0.7 * noise
             }
         })
         .collect()

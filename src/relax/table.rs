@@ -49,6 +49,33 @@ impl Table {
         slots.push(SlotSpec { tau: DELTA, generations: last });
         slots.sort_by(|a, b| a.tau.total_cmp(&b.tau));
         slots.dedup_by(|a, b| a.tau == b.tau);
+        Self::on(slots)
+    }
+
+    /// A finished layer as a table to train further; classes that it does not hold read the first later
+    /// slot that does.
+    #[must_use]
+    pub fn from_layer(rules: &Rules, layer: &Layer) -> Self {
+        let spec = |s: &Slot| SlotSpec { tau: s.tau, generations: s.generations.into() };
+        let slots: Vec<SlotSpec> = layer.slots().iter().map(spec).collect();
+        let mut table = Self::on(slots);
+        for slot in 0..table.slots.len() {
+            for class in 0..table.range(slot).len() {
+                let held = (slot..table.slots.len()).find_map(|later| {
+                    let generations = table.slots[slot].generations;
+                    let held = &layer.slots()[later];
+                    let fewer = usize::from(held.generations);
+                    let class = class::coarsened(rules, generations, class as u32, fewer)?;
+                    let vector = held.vectors.get(class as usize)?;
+                    Some(vector.map(|v| f32::from(v) * held.scale))
+                });
+                table.vectors[table.starts[slot] + class] = held.unwrap_or_default();
+            }
+        }
+        table
+    }
+
+    fn on(slots: Vec<SlotSpec>) -> Self {
         let mut starts = vec![0];
         for slot in &slots {
             let count = class_count(slot.generations).unwrap_or(0) as usize;
@@ -86,6 +113,15 @@ impl Table {
             (self.starts[slot] + site.classes.over(self.slots[slot].generations) as usize) as u32
         };
         [(entry(i), (1.0 - w) as f32), (entry(i + 1), w as f32)]
+    }
+
+    /// The vector of a site, in edges of its level and its grandparent's frame.
+    #[must_use]
+    pub fn read(&self, site: &Site) -> glam::Vec2 {
+        self.reads(site)
+            .iter()
+            .map(|(entry, weight)| glam::Vec2::from(self.vectors[*entry as usize]) * *weight)
+            .sum()
     }
 
     /// The vectors at other slots, interpolated from this table; classes keep what their coarser

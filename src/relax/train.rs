@@ -3,9 +3,10 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::field::{spacing, threshold_of_phase};
+use super::field::{Image, ImageRules, spacing, threshold_of_phase};
 use super::force::{Law, Points, READS, Sum};
 use super::ground::{Ground, Region, density};
+use super::motif;
 use super::patch::Ramp;
 use super::random::Random;
 use super::site::sites;
@@ -45,6 +46,10 @@ pub struct Stage {
 /// The share of the last step that a vector keeps.
 const MOMENTUM: f32 = 0.7;
 
+/// The most that a vector moves in a sweep, in spacings: stiff contacts must not throw points across
+/// their neighbours.
+const LONGEST_STEP: f32 = 0.05;
+
 /// Added to an entry's weight, so that rare classes move slowly.
 const INERTIA: f32 = 3.0;
 
@@ -71,8 +76,90 @@ pub fn pass(
         .into_par_iter()
         .map(|i| patch(rules, table, pass, i, &mut Random::new(seed, &[i as u64])))
         .collect::<Result<Vec<_>, _>>()?;
+    sweeps(table, &mut patches, &pass.stages, progress);
+    Ok(())
+}
+
+/// Trains a rough layer on images: each patch is a procedural image (see [`Motif`]) at one of `count` phases
+/// spread over a level; points read `smooth` and `rough` mixed by the detail around them, and only `rough` learns.
+///
+/// # Errors
+/// As [`pass`].
+pub fn image_pass(
+    rules: &Rules,
+    smooth: &Table,
+    rough: &mut Table,
+    images: &ImagePass,
+    seed: u64,
+    progress: &mut dyn FnMut(usize),
+) -> Result<(), OutOfRange> {
+    let mut patches = (0..images.patches)
+        .into_par_iter()
+        .map(|i| {
+            let mut random = Random::new(seed, &[i as u64]);
+            image_patch(rules, smooth, rough, images, i, &mut random)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    sweeps(rough, &mut patches, &images.stages, progress);
+    Ok(())
+}
+
+fn image_patch(
+    rules: &Rules,
+    smooth: &Table,
+    rough: &Table,
+    images: &ImagePass,
+    number: usize,
+    random: &mut Random,
+) -> Result<Points, OutOfRange> {
+    let tau = super::report::phase(number, images.patches);
+    let values = motif::image(random);
+    let Some(field) = Image::new(values, motif::SIDE, images.points, tau, images.rules) else {
+        return Err(OutOfRange);
+    };
+    let half = field.half_extent();
+    let margin = DVec2::splat(6.0 * spacing(threshold_of_phase(tau)));
+    let ground = Ground::random(rules, half.length(), random)?;
+    let sites = sites(&ground, &field, Region::Rectangle(half))?;
+    let mut points = Points::new(
+        &sites,
+        |site| {
+            let mut reads = [(0, 0.0); READS];
+            for (read, (entry, weight)) in reads.iter_mut().zip(rough.reads(site)) {
+                *read = (entry, weight * site.detail as f32);
+            }
+            reads
+        },
+        |site| site.detail > 0.0 && (site.centre.abs() + margin).cmplt(half).all(),
+    );
+    points.displace(|i| {
+        let v = smooth.read(&sites[i]);
+        v * (1.0 - sites[i].detail as f32)
+    });
+    Ok(points)
+}
+
+/// Settings of a pass on images.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImagePass {
+    /// How many images.
+    pub patches: usize,
+    /// Points an image.
+    pub points: f64,
+    /// How images are read.
+    pub rules: ImageRules,
+    /// The stages.
+    pub stages: Vec<Stage>,
+}
+
+fn sweeps(
+    table: &mut Table,
+    patches: &mut [Points],
+    stages: &[Stage],
+    progress: &mut dyn FnMut(usize),
+) {
     let mut velocities = vec![[0.0f32; 2]; table.vectors.len()];
-    for stage in &pass.stages {
+    for stage in stages {
         let law = stage.law.table();
         for sweep in 0..stage.sweeps {
             let list = sweep < 6 || sweep % LIST_EVERY == 0;
@@ -80,7 +167,7 @@ pub fn pass(
             patches.par_iter_mut().for_each(|patch| patch.sweep(vectors, &law, list));
             // In the order of the patches, so that no sum depends on the threads.
             let mut sums = vec![Sum::default(); vectors.len()];
-            for patch in &patches {
+            for patch in patches.iter() {
                 for (sum, more) in sums[patch.first..].iter_mut().zip(&patch.sums) {
                     sum.force += more.force;
                     sum.weight += more.weight;
@@ -92,7 +179,6 @@ pub fn pass(
             progress(1);
         }
     }
-    Ok(())
 }
 
 /// The patch of one interval, at a random place.
@@ -154,12 +240,19 @@ fn update(
     let spacing_at_1 = spacing(threshold_of_phase(1.0)) as f32;
     for slot in 1..last {
         let step = stage.step * settle * spacing_at_1 / libm::sqrtf(table.slots()[slot].tau);
+        let most = LONGEST_STEP * step / (stage.step * settle);
         for entry in table.range(slot) {
             let sum = &sums[entry];
             let gain = step / (sum.weight + INERTIA);
             let (velocity, vector) = (&mut velocities[entry], &mut table.vectors[entry]);
             for (k, force) in sum.force.to_array().into_iter().enumerate() {
                 velocity[k] = MOMENTUM * velocity[k] + gain * force;
+            }
+            let length = libm::hypotf(velocity[0], velocity[1]);
+            if length > most {
+                *velocity = velocity.map(|v| v * (most / length));
+            }
+            for k in 0..2 {
                 vector[k] = (vector[k] + velocity[k]) * (1.0 - stage.shrink);
             }
         }
