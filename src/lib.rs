@@ -1,11 +1,31 @@
 //! twelvefold
 #![cfg_attr(not(feature = "std"), no_std)]
-#![warn(missing_docs)]
+
 extern crate alloc;
+
 pub mod bake;
+mod clip;
+mod domain;
+pub mod importance;
 #[cfg(feature = "measure")]
 pub mod measure;
+#[cfg(test)]
+mod oracle;
 pub mod paper;
+mod placement;
+mod points;
 #[cfg(feature = "train")]
 pub mod relax;
+mod sampling;
+mod seed;
+mod tables;
 pub mod tiling;
+mod walk;
+
+pub use domain::{Domain, DomainError, Region};
+pub use importance::{Constant, Function, ImageMap, Importance, InvalidPixels, MapError};
+pub use placement::Placement;
+pub use points::{Filled, Points, Sample};
+pub use sampling::{Amount, Limits, Sampling, SamplingError};
+pub use tables::{BlockTable, Tables, TablesError};
+pub use walk::scalar::{Position, Scalar};

@@ -165,11 +165,20 @@ impl fmt::Display for DigitsError {
 impl core::error::Error for DigitsError {}
 
 impl Digits {
-    /// From digits in derivation order, `digits[parent]`; entries past a type's child count are
-    /// ignored. Checked when [`Rules`](super::Rules) are made from it.
+    /// From digits in derivation order, `digits[parent]`; entries past a type's child count are taken
+    /// as 0. Checked when [`Rules`](super::Rules) are made from it.
     #[must_use]
-    pub const fn from_derivation_order(digits: [[u8; MAX_CHILDREN]; 4]) -> Self {
+    pub fn from_derivation_order(mut digits: [[u8; MAX_CHILDREN]; 4]) -> Self {
+        for parent in TileType::ALL {
+            digits[parent.index()][parent.child_count()..].fill(0);
+        }
         Self(digits)
+    }
+
+    /// A row a parent, in derivation order; entries past a type's child count are 0.
+    #[must_use]
+    pub const fn derivation_order(&self) -> [[u8; MAX_CHILDREN]; 4] {
+        self.0
     }
 
     /// The digits of the children of `parent`, in derivation order.

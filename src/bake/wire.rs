@@ -1,0 +1,140 @@
+//! The bytes of a table file.
+//!
+//! A bincode 2 document (fixed-width integers, little-endian) followed by its CRC-32. Numbers that the
+//! walk reads in bulk are byte strings of little-endian values, one array a field, so that they are
+//! used where they lie: nothing is decoded or copied when a program starts.
+
+use alloc::vec::Vec;
+
+use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
+use serde::{Deserialize, Serialize};
+
+use super::{BakeError, block::Block};
+use crate::tiling::{Rules, TileType};
+
+/// First bytes of every table file.
+pub(crate) const MAGIC: [u8; 8] = *b"12fold\r\n";
+
+/// Format version, raised by every change of layout or meaning.
+pub(crate) const VERSION: u16 = 1;
+
+/// Largest document that is looked at: depth 4 needs 5.3 MB, and room is left for relaxed offsets.
+const MAX_BYTES: usize = 1 << 26;
+
+/// Length of the checksum at the end.
+const CRC_BYTES: usize = 4;
+
+fn config() -> Configuration<LittleEndian, Fixint, Limit<MAX_BYTES>> {
+    bincode::config::standard().with_fixed_int_encoding().with_limit::<MAX_BYTES>()
+}
+
+/// The document.
+#[derive(Serialize, Deserialize, Debug, PartialEq, Eq)]
+pub(crate) struct Document<'a> {
+    pub(crate) magic: [u8; 8],
+    pub(crate) version: u16,
+    pub(crate) depth: u8,
+    /// Slots of the density phase Ψ for which offsets are stored; 0: fixed centres only.
+    pub(crate) phases: u16,
+    /// The digit assignment, a row a parent type, in derivation order.
+    pub(crate) digits: [[u8; 14]; 4],
+    /// (type, rotation in units of 30°) of each child, a row a parent type, by digit; 0 past the last.
+    pub(crate) children: [[(u8, u8); 14]; 4],
+    #[serde(borrow)]
+    pub(crate) blocks: [BlockBytes<'a>; 4],
+}
+
+/// One type's block. Each field is an array of little-endian values, one an entry.
+#[derive(Serialize, Deserialize, Debug, PartialEq, Eq, Clone, Copy)]
+pub(crate) struct BlockBytes<'a> {
+    /// A of the rank, u16.
+    pub(crate) rank_a: &'a [u8],
+    /// B of the rank, u16.
+    pub(crate) rank_b: &'a [u8],
+    /// Normalized thresholds, f32.
+    pub(crate) thresholds: &'a [u8],
+    /// Offsets turned by 0°, 30° and 60° (quarter turns are applied exactly at run time): for each
+    /// the four fields u, v, p, q of (u + v√3)/2, (p + q√3)/2, i16, one array a field.
+    #[serde(borrow)]
+    pub(crate) offsets: [[&'a [u8]; 4]; 3],
+}
+
+/// Owned arrays from which the document borrows.
+struct BlockColumns {
+    rank_a: Vec<u8>,
+    rank_b: Vec<u8>,
+    thresholds: Vec<u8>,
+    offsets: [[Vec<u8>; 4]; 3],
+}
+
+impl BlockColumns {
+    fn new(block: &Block, depth: u8) -> Result<Self, BakeError> {
+        let entries = block.entries();
+        let mut offsets: [[Vec<u8>; 4]; 3] = Default::default();
+        for (rotation, columns) in (0..3).zip(&mut offsets) {
+            for entry in entries {
+                for (column, field) in columns.iter_mut().zip(entry.turned(rotation)?) {
+                    column.extend(field.to_le_bytes());
+                }
+            }
+        }
+        Ok(Self {
+            rank_a: entries.iter().flat_map(|e| e.rank_a.to_le_bytes()).collect(),
+            rank_b: entries.iter().flat_map(|e| e.rank_b.to_le_bytes()).collect(),
+            thresholds: entries.iter().flat_map(|e| e.threshold(depth).to_le_bytes()).collect(),
+            offsets,
+        })
+    }
+
+    fn as_bytes(&self) -> BlockBytes<'_> {
+        BlockBytes {
+            rank_a: &self.rank_a,
+            rank_b: &self.rank_b,
+            thresholds: &self.thresholds,
+            offsets: self.offsets.each_ref().map(|columns| columns.each_ref().map(Vec::as_slice)),
+        }
+    }
+}
+
+/// Encodes blocks of the given depth.
+pub(crate) fn encode(rules: &Rules, depth: u8, blocks: &[Block; 4]) -> Result<Vec<u8>, BakeError> {
+    let [a, b, c, d] = blocks.each_ref().map(|block| BlockColumns::new(block, depth));
+    let columns = [a?, b?, c?, d?];
+    let mut children = [[(0, 0); 14]; 4];
+    for (row, parent) in children.iter_mut().zip(TileType::ALL) {
+        for (slot, child) in row.iter_mut().zip(rules.children(parent)) {
+            *slot = (child.kind as u8, child.rotation);
+        }
+    }
+    let document = Document {
+        magic: MAGIC,
+        version: VERSION,
+        depth,
+        phases: 0,
+        digits: rules.digits().derivation_order(),
+        children,
+        blocks: columns.each_ref().map(BlockColumns::as_bytes),
+    };
+    let mut bytes =
+        bincode::serde::encode_to_vec(&document, config()).map_err(|_| BakeError::Range)?;
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    Ok(bytes)
+}
+
+/// The document's bytes, without the checksum at the end.
+pub(crate) fn without_checksum(bytes: &[u8]) -> Option<&[u8]> {
+    bytes.get(..bytes.len().checked_sub(CRC_BYTES)?)
+}
+
+/// Whether the checksum at the end is that of the document before it.
+pub(crate) fn is_intact(bytes: &[u8]) -> bool {
+    without_checksum(bytes)
+        .is_some_and(|document| bytes[document.len()..] == crc32fast::hash(document).to_le_bytes())
+}
+
+/// Decodes a document without its checksum, borrowing its arrays. `None` when the bytes are no
+/// document or go on after it.
+pub(crate) fn decode(document: &[u8]) -> Option<Document<'_>> {
+    let (decoded, length) = bincode::serde::borrow_decode_from_slice(document, config()).ok()?;
+    (length == document.len()).then_some(decoded)
+}

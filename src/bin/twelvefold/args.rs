@@ -1,0 +1,104 @@
+//! The command line. Each subcommand's options live in a struct of their own; a new subcommand is a
+//! variant of [`Command`], its options struct, and one arm in `main.rs`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// The most dots that one run draws.
+pub(crate) const MAX_POINTS: u64 = 50_000_000;
+
+/// Well-spread points with a density you control, from a dodecagonal aperiodic tiling.
+#[derive(Debug, Parser)]
+#[command(name = "twelvefold", version, propagate_version = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Draw a photograph with equal dots, dense where it is dark.
+    Stipple(StippleOptions),
+    /// Say what the tables inside this program hold.
+    Tables,
+}
+
+/// Options of `twelvefold stipple`.
+#[derive(Debug, Args)]
+pub(crate) struct StippleOptions {
+    /// The photograph: PNG, JPEG, TIFF, Radiance HDR or OpenEXR, told apart by content.
+    ///
+    /// Transparent pixels are laid over white. In float files negative values count as zero and
+    /// values above one as white; a NaN or an infinity is an error.
+    pub(crate) photo: PathBuf,
+
+    /// Where the dots go: a file ending in .svg, .png or .csv, or `-` for CSV on standard output.
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// How many dots, at most 50,000,000 [default: one every 3 pixels where the photograph is black,
+    /// that is a ninth of the sum of all pixels' darkness from 0 to 1].
+    ///
+    /// The number drawn is close to this, not equal to it.
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]
+    pub(crate) points: Option<u64>,
+
+    /// Chooses which of many equally good arrangements is drawn.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// A dot's diameter in pixels of the photograph [default: the one at which the dots' areas add up
+    /// to the whole area where the photograph is black].
+    ///
+    /// Of no effect on CSV.
+    #[arg(long, value_name = "PIXELS", value_parser = positive)]
+    pub(crate) dot_size: Option<f64>,
+
+    /// Put dots where the photograph is light, and draw them white on black.
+    #[arg(long)]
+    pub(crate) invert: bool,
+
+    /// Follow linear light instead of encoded values: averaged over an area, the dots then reflect as
+    /// much light as the photograph.
+    #[arg(long)]
+    pub(crate) linear: bool,
+
+    /// Size of the SVG or PNG picture, as a multiple of the photograph's; dots grow with it.
+    ///
+    /// Of no effect on CSV, whose unit is always the photograph's pixel.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
+    pub(crate) scale: f64,
+
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Reads a finite number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("not a finite number above zero".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        use clap::CommandFactory as _;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn numbers_must_be_finite_and_above_zero() {
+        assert_eq!(positive("2.5"), Ok(2.5));
+        for bad in ["0", "-1", "NaN", "inf", "1e999", "", "3px"] {
+            assert!(positive(bad).is_err(), "{bad}");
+        }
+    }
+}

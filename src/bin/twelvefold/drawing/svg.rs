@@ -1,0 +1,129 @@
+//! Dots as circles of an SVG file.
+
+use std::io::{self, BufWriter, Write};
+
+use super::{Drawing, Style};
+
+/// An SVG file whose user unit is the photograph's pixel. Streams: each dot is written when it comes.
+#[derive(Debug)]
+pub(crate) struct Svg<W: Write> {
+    out: BufWriter<W>,
+    decimals: usize,
+    /// What follows the coordinates of every circle.
+    tail: String,
+}
+
+impl<W: Write> Svg<W> {
+    /// Begins the file.
+    ///
+    /// # Errors
+    /// The system's.
+    pub(crate) fn new(out: W, style: &Style) -> io::Result<Self> {
+        let mut out = BufWriter::with_capacity(1 << 16, out);
+        let (width, height) = (style.width, style.height);
+        let (shown_width, shown_height) = (width as f64 * style.scale, height as f64 * style.scale);
+        let (ground, ink) =
+            if style.white_on_black { ("black", "white") } else { ("white", "black") };
+        writeln!(
+            out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{shown_width}\" \
+             height=\"{shown_height}\" viewBox=\"0 0 {width} {height}\">\n\
+             <title>{}</title>\n<desc>{}</desc>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"{ground}\"/>\n<g fill=\"{ink}\">",
+            escaped(&style.title),
+            escaped(&style.description),
+        )?;
+        let radius = style.dot_size / 2.0;
+        // A thousandth of the radius is as little to see as a hundredth of the spacing.
+        let tail = format!("\" r=\"{radius:.*}\"/>\n", decimals(radius / 10.0));
+        Ok(Self { out, decimals: decimals(style.spacing), tail })
+    }
+}
+
+/// How many decimals keep the rounding error under a hundredth of `length`.
+fn decimals(length: f64) -> usize {
+    let (mut decimals, mut error) = (0, 0.5);
+    // A 32-bit float below one pixel has no more than nine decimals that mean anything.
+    while error >= length / 100.0 && decimals < 9 {
+        decimals += 1;
+        error /= 10.0;
+    }
+    decimals
+}
+
+impl<W: Write> Drawing for Svg<W> {
+    fn dot(&mut self, x: f32, y: f32) -> io::Result<()> {
+        let decimals = self.decimals;
+        write!(self.out, "<circle cx=\"{x:.decimals$}\" cy=\"{y:.decimals$}{}", self.tail)
+    }
+
+    fn finish(mut self) -> io::Result<()> {
+        self.out.write_all(b"</g>\n</svg>\n")?;
+        self.out.flush()
+    }
+}
+
+/// `text` as XML character data. Control characters, which XML 1.0 cannot hold, become U+FFFD.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '\t' | '\n' => escaped.push(' '),
+            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => {
+                escaped.push(char::REPLACEMENT_CHARACTER);
+            }
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn just_enough_decimals() {
+        // Two decimals are off by up to 0.005 pixels.
+        for (spacing, expected) in [(3.0, 2), (0.6, 2), (0.5, 3), (0.3, 3), (60.0, 0), (40.0, 1)] {
+            assert_eq!(decimals(spacing), expected, "{spacing}");
+        }
+        assert_eq!(decimals(0.0), 9);
+    }
+
+    #[test]
+    fn a_file_name_cannot_break_the_markup() {
+        assert_eq!(escaped("a<b>&\"c\"\u{1}\n"), "a&lt;b&gt;&amp;\"c\"\u{fffd} ");
+    }
+
+    #[test]
+    fn each_dot_is_one_circle_on_a_ground_of_the_photographs_shape() {
+        let style = Style {
+            width: 40,
+            height: 30,
+            scale: 2.5,
+            dot_size: 3.25,
+            spacing: 3.0,
+            white_on_black: true,
+            linear: false,
+            title: "t".into(),
+            description: "d".into(),
+        };
+        let mut bytes = Vec::new();
+        let mut svg = Svg::new(&mut bytes, &style).unwrap();
+        svg.dot(0.0, 29.999).unwrap();
+        svg.dot(12.345, 6.0).unwrap();
+        svg.finish().unwrap();
+        assert_eq!(
+            String::from_utf8(bytes).unwrap(),
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100\" height=\"75\" \
+             viewBox=\"0 0 40 30\">\n<title>t</title>\n<desc>d</desc>\n\
+             <rect width=\"40\" height=\"30\" fill=\"black\"/>\n<g fill=\"white\">\n\
+             <circle cx=\"0.00\" cy=\"30.00\" r=\"1.625\"/>\n\
+             <circle cx=\"12.35\" cy=\"6.00\" r=\"1.625\"/>\n</g>\n</svg>\n"
+        );
+    }
+}

@@ -1,0 +1,206 @@
+//! Placements: where in the infinite tiling a domain lies.
+
+use glam::DVec2;
+
+use crate::domain::{Domain, Region};
+use crate::seed::SplitMix64;
+use crate::tables::Tables;
+use crate::tiling::MAX_LEVEL;
+use crate::tiling::cyclotomic::SQRT_3;
+use crate::walk::leaf::tile_counts;
+use crate::walk::node::{ExactPoint, Node};
+
+/// The level of the few tiles at which every walk of a placement starts.
+pub(crate) const FRONTIER_LEVEL: u8 = 4;
+
+/// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
+/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]); no more than 9
+/// such points fit.
+const MAX_FRONTIER: usize = 12;
+
+/// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times
+/// that, 258 diagonals: roots under 128 domain widths give measurably biased sets, because a window
+/// is then likely to hold one of the root's oldest points.
+const FRONTIER_EDGE: f64 = 4.0 / 3.0;
+
+/// No descendant of a tile is farther from its centre than this many of its edges: children are at
+/// most 2 cos 15° child edges away, and 2 cos 15°/(λ − 1) = 1/√2 exactly.
+pub(crate) const REACH: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
+/// Every point of the plane within this many edges of an `a` centre is covered by its descendants.
+const INNER_RADIUS: f64 = 1.0 - REACH;
+
+/// Position, rotation and scale of a domain inside a far larger root tile, all from one seed.
+///
+/// A placement fixes an endless sequence of points in its domain, dense everywhere, each with a rank;
+/// an importance decides how far into the sequence each place goes. Since position and rotation are
+/// random, points accepted by an importance are an unbiased sample of it.
+///
+/// Making one costs microseconds: it finds the path from the root down to the at most nine tiles
+/// that touch the domain. Keep it from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Placement<'t> {
+    domain: Domain,
+    tables: Tables<'t>,
+    /// In [0, 1), added to every rank before it is compared.
+    rank_shift: f64,
+    frontier: [Option<Node>; MAX_FRONTIER],
+    /// The reference tile's centre, relative to the domain's least corner.
+    origin: DVec2,
+    /// For each level: the vector of half an edge along the tiling's x axis.
+    half_edges: [DVec2; MAX_LEVEL + 1],
+    /// The area of the whole root in squared units.
+    root_area: f64,
+}
+
+impl Placement<'static> {
+    /// The domain's placement under this seed, with the tables of this build.
+    #[must_use]
+    pub fn new(domain: Domain, seed: u64) -> Self {
+        Self::with_tables(domain, seed, Tables::built_in())
+    }
+}
+
+impl<'t> Placement<'t> {
+    /// The same with other tables. Tables of another depth but the same digits give the same points.
+    #[must_use]
+    pub fn with_tables(domain: Domain, seed: u64, tables: Tables<'t>) -> Self {
+        let mut random = SplitMix64::new(seed);
+        let axis = DVec2::from_array(random.direction());
+        // The domain's centre in root edges. Density ∝ (1 − r²)² towards the rim rather than uniform:
+        // the bias that a finite root leaves is ten times smaller.
+        let root_edge = frontier_edges_per_root() * FRONTIER_EDGE * domain.diagonal();
+        let range = INNER_RADIUS - 0.5 * domain.diagonal() / root_edge;
+        let centre = range * DVec2::from_array(random.in_disc(2));
+        let rank_shift = random.unit();
+
+        let mut placement = Self {
+            domain,
+            tables,
+            rank_shift,
+            frontier: [None; MAX_FRONTIER],
+            origin: DVec2::ZERO,
+            half_edges: core::array::from_fn(|level| {
+                0.5 * (root_edge / lambda_power(level)) * axis
+            }),
+            // A root `a` owns √3/2 squared edges.
+            root_area: 0.5 * SQRT_3 * root_edge * root_edge,
+        };
+        placement.find_frontier(centre);
+        placement
+    }
+
+    /// Walks from the root to the tiles of the frontier level whose descendants can reach the domain,
+    /// whose centre is `centre` in root edges.
+    fn find_frontier(&mut self, centre: DVec2) {
+        let mut count = 0;
+        let mut nearest = (f64::INFINITY, ExactPoint::default());
+        // Depth first; at most 13 siblings wait on each of the levels above the frontier.
+        let mut stack = [Node::root(); 14 * FRONTIER_LEVEL as usize];
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let node = stack[waiting];
+            // Everything in edges of this level.
+            let to_domain = centre * lambda_power(node.level.into()) - node.centre.to_dvec2();
+            let half_diagonal =
+                0.5 / FRONTIER_EDGE / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
+            if to_domain.length() > REACH + half_diagonal + 1e-9 {
+                continue;
+            }
+            if node.level == FRONTIER_LEVEL {
+                if to_domain.length() < nearest.0 {
+                    nearest = (to_domain.length(), node.centre);
+                }
+                debug_assert!(count < MAX_FRONTIER, "the packing bound of MAX_FRONTIER");
+                if let Some(slot) = self.frontier.get_mut(count) {
+                    *slot = Some(node);
+                    count += 1;
+                }
+                continue;
+            }
+            let (tiles, before) = tile_counts(node.level);
+            for digit in (0..node.kind.child_count()).rev() {
+                if let Some(child) = node.child(&self.tables, digit, tiles, before) {
+                    stack[waiting] = child;
+                    waiting += 1;
+                }
+            }
+        }
+
+        // From here on, coordinates are relative to the tile nearest to the domain's centre.
+        let (_, reference) = nearest;
+        for node in self.frontier.iter_mut().flatten() {
+            node.centre = node.centre.minus(reference);
+            (node.born, node.centre_at_birth) = (node.level, node.centre);
+        }
+        let level = usize::from(FRONTIER_LEVEL);
+        let from_domain = reference.to_dvec2() - centre * lambda_power(level);
+        let edge = 2.0 * self.half_edges[level];
+        // + 0.0 turns a −0.0 into 0.0, so that sums do not depend on the sign of a zero term.
+        self.origin = 0.5 * self.domain.size() + edge.rotate(from_domain) + 0.0;
+    }
+
+    /// The domain.
+    #[must_use]
+    pub fn domain(&self) -> Domain {
+        self.domain
+    }
+
+    /// The tables.
+    #[must_use]
+    pub fn tables(&self) -> &Tables<'t> {
+        &self.tables
+    }
+
+    /// The tiles at which walks start.
+    pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
+        self.frontier.iter().flatten()
+    }
+
+    /// The reference tile's centre, relative to the domain's least corner.
+    pub(crate) fn origin(&self) -> DVec2 {
+        self.origin
+    }
+
+    /// The number in [0, 1) that is added to every rank before it is compared.
+    pub(crate) fn rank_shift(&self) -> f64 {
+        self.rank_shift
+    }
+
+    /// How many ranks correspond to one point a squared unit: the area of the root.
+    pub(crate) fn ranks_per_density(&self) -> f64 {
+        self.root_area
+    }
+
+    /// Half an edge of `level`, along the tiling's x axis, in units.
+    pub(crate) fn half_edge(&self, level: u8) -> DVec2 {
+        self.half_edges[usize::from(level)]
+    }
+
+    /// A disc, in units, that holds all descendants of a node, as computed in either precision.
+    pub(crate) fn region(&self, node: &Node) -> Region {
+        let half_edge = self.half_edge(node.level);
+        let doubled = 2.0 * node.centre.to_dvec2();
+        let edge = 2.0 * half_edge.length();
+        Region {
+            centre: self.domain.min() + (self.origin + half_edge.rotate(doubled)),
+            // f32 positions are off by up to 2⁻²¹ diagonals (tests/accuracy.rs).
+            radius: REACH * edge + self.domain.diagonal() * 1e-6,
+        }
+    }
+}
+
+/// λ^n = a + b√3 with integers a, b: the sum of two positive terms, accurate to an ulp.
+fn lambda_power(n: usize) -> f64 {
+    let (mut a, mut b) = (1i64, 0i64);
+    for _ in 0..n {
+        (a, b) = (2 * a + 3 * b, a + 2 * b);
+    }
+    a as f64 + SQRT_3 * b as f64
+}
+
+/// Frontier edges in a root edge, λ⁴.
+fn frontier_edges_per_root() -> f64 {
+    lambda_power(FRONTIER_LEVEL.into())
+}

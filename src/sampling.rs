@@ -1,0 +1,328 @@
+//! Samplings: a placement, an importance and an amount, checked, ready to emit points.
+
+use core::fmt;
+use core::ops::ControlFlow;
+
+use glam::DVec2;
+
+use crate::domain::Region;
+use crate::importance::Importance;
+use crate::placement::Placement;
+use crate::points::{Filled, Points, Sample};
+use crate::tiling::{MAX_LEVEL, TileCounts};
+use crate::walk::{self, scalar::Position};
+
+/// How many points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Amount {
+    /// About this many in all: the expected number over all seeds is exactly this, and a single
+    /// seed's number is within a fraction of a percent for thousands of points. Needs an importance
+    /// that knows its integral.
+    Points(f64),
+    /// This many a squared unit where the importance is 1.
+    Density(f64),
+}
+
+/// Limits on the work of one sampling, checked before it starts where that is possible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The most points that may be expected. Where the importance does not know its integral, its
+    /// upper bound times the area counts.
+    pub points: u64,
+    /// The most tiles that one walk may visit; each visit can test a few hundred candidates.
+    pub tiles: u64,
+}
+
+impl Default for Limits {
+    /// Four billion points, a hundred billion tiles.
+    fn default() -> Self {
+        Self { points: 1 << 32, tiles: 100_000_000_000 }
+    }
+}
+
+/// Why points could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SamplingError {
+    /// The amount is NaN, infinite or negative.
+    Amount {
+        /// The number.
+        value: f64,
+    },
+    /// A count was asked for, but the importance does not know its integral.
+    UnknownIntegral,
+    /// A count was asked for, but the importance is 0 everywhere.
+    NoImportance,
+    /// More points are expected than [`Limits::points`].
+    TooManyPoints {
+        /// The number expected.
+        expected: f64,
+        /// The limit.
+        limit: u64,
+    },
+    /// The density asked for is past the deepest level whose ranks fit 64 bits.
+    TooDense {
+        /// The centre of the region with that density.
+        near: DVec2,
+    },
+    /// An upper bound is NaN, infinite or negative.
+    InvalidBound {
+        /// The centre of the region asked about.
+        near: DVec2,
+        /// The bound.
+        bound: f64,
+    },
+    /// A value is NaN, negative, or above the bound of a region that holds its point.
+    InvalidValue {
+        /// The point.
+        at: DVec2,
+        /// The value.
+        value: f64,
+        /// The bound.
+        bound: f64,
+    },
+    /// The walk visited more tiles than [`Limits::tiles`].
+    TilesLimit {
+        /// The limit.
+        limit: u64,
+    },
+    /// No number of the position type lies in the domain: it is too small, too far from the origin.
+    Precision,
+}
+
+impl fmt::Display for SamplingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Amount { value } => write!(f, "{value} is no amount of points"),
+            Self::UnknownIntegral => f.write_str(
+                "a number of points needs an importance that knows its integral over the domain",
+            ),
+            Self::NoImportance => f.write_str("the importance is zero everywhere"),
+            Self::TooManyPoints { expected, limit } => {
+                write!(f, "about {expected:.0} points are expected, the limit is {limit}")
+            }
+            Self::TooDense { near } => write!(
+                f,
+                "the density near ({}, {}) is past the deepest level, {MAX_LEVEL}",
+                near.x, near.y
+            ),
+            Self::InvalidBound { near, bound } => {
+                write!(f, "the upper bound near ({}, {}) is {bound}", near.x, near.y)
+            }
+            Self::InvalidValue { at, value, bound } => write!(
+                f,
+                "the importance at ({}, {}) is {value}, not between 0 and its bound {bound}",
+                at.x, at.y
+            ),
+            Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
+            Self::Precision => {
+                f.write_str("no number of this precision lies in the domain; use DVec2")
+            }
+        }
+    }
+}
+
+impl core::error::Error for SamplingError {}
+
+/// A point set: fixed by tables, placement, importance and amount, and by nothing else.
+///
+/// A point of rank k (its fixed place in the placement's sequence) is in the set if and only if
+/// k + u < T, where T is the importance at the point in rank units and u ∈ [0, 1) comes from the seed.
+/// Fixed u: raising the importance anywhere only ever adds points there.
+#[derive(Debug)]
+pub struct Sampling<'a, I> {
+    placement: &'a Placement<'a>,
+    importance: &'a I,
+    scale: RankScale,
+    expected: Option<f64>,
+    limits: Limits,
+}
+
+// Derived, these would ask the importance itself to be `Copy`.
+impl<I> Copy for Sampling<'_, I> {}
+impl<I> Clone for Sampling<'_, I> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<'a, I: Importance> Sampling<'a, I> {
+    /// The set of `amount` points under an importance, within the default [`Limits`].
+    ///
+    /// # Errors
+    /// [`SamplingError`], before any work: see its variants.
+    pub fn new(
+        placement: &'a Placement<'a>,
+        importance: &'a I,
+        amount: Amount,
+    ) -> Result<Self, SamplingError> {
+        Self::with_limits(placement, importance, amount, Limits::default())
+    }
+
+    /// The same within the caller's limits.
+    ///
+    /// # Errors
+    /// [`SamplingError`], before any work: see its variants.
+    pub fn with_limits(
+        placement: &'a Placement<'a>,
+        importance: &'a I,
+        amount: Amount,
+        limits: Limits,
+    ) -> Result<Self, SamplingError> {
+        let domain = placement.domain();
+        let (Amount::Points(value) | Amount::Density(value)) = amount;
+        if !(value >= 0.0 && value.is_finite()) {
+            return Err(SamplingError::Amount { value });
+        }
+        let integral = importance.integral(&domain);
+        let density = match amount {
+            Amount::Density(density) => density,
+            Amount::Points(0.0) => 0.0,
+            Amount::Points(points) => match integral {
+                None => return Err(SamplingError::UnknownIntegral),
+                Some(integral) if integral > 0.0 => points / integral,
+                Some(_) => return Err(SamplingError::NoImportance),
+            },
+        };
+        let expected = integral.map(|integral| integral * density);
+        let sampling = Self {
+            placement,
+            importance,
+            scale: RankScale {
+                magnification: density * placement.ranks_per_density(),
+                shift: placement.rank_shift(),
+            },
+            expected,
+            limits,
+        };
+        let region = domain.region();
+        let bound = importance.upper_bound(&region);
+        sampling.rank_limit_of_bound(bound, &region)?;
+        let expected = expected.unwrap_or(bound * density * domain.area());
+        if !(expected <= limits.points as f64) {
+            return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
+        }
+        Ok(sampling)
+    }
+
+    /// The placement.
+    #[must_use]
+    pub fn placement(&self) -> &'a Placement<'a> {
+        self.placement
+    }
+
+    /// The importance.
+    #[must_use]
+    pub fn importance(&self) -> &'a I {
+        self.importance
+    }
+
+    /// The limits.
+    #[must_use]
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
+    /// The number of points expected over all seeds, if the importance knows its integral.
+    #[must_use]
+    pub fn expected_points(&self) -> Option<f64> {
+        self.expected
+    }
+
+    /// Points expected in a squared unit where the importance is 1.
+    #[must_use]
+    pub fn density(&self) -> f64 {
+        self.scale.magnification / self.placement.ranks_per_density()
+    }
+
+    /// From importance to ranks.
+    pub(crate) fn scale(&self) -> RankScale {
+        self.scale
+    }
+
+    /// The number of ranks that an upper bound admits; it need not be one that the library computed.
+    pub(crate) fn rank_limit_of_bound(
+        &self,
+        bound: f64,
+        region: &Region,
+    ) -> Result<u64, SamplingError> {
+        if !(bound >= 0.0 && bound.is_finite()) {
+            return Err(SamplingError::InvalidBound { near: region.centre, bound });
+        }
+        let limit = self.scale.limit(bound);
+        let deepest = TileCounts::HEXAGON.all()[MAX_LEVEL];
+        if limit > deepest {
+            return Err(SamplingError::TooDense { near: region.centre });
+        }
+        Ok(limit)
+    }
+
+    /// Calls `visit` for each point, in the order of the walk, until it breaks.
+    ///
+    /// Positions are glam's `Vec2` or `DVec2`, as `visit` takes them. Allocates nothing.
+    ///
+    /// # Errors
+    /// [`SamplingError`] when the importance breaks its own bounds or the walk its limits. Points
+    /// visited before that are points of the set.
+    pub fn visit<P: Position>(
+        &self,
+        mut visit: impl FnMut(Sample<P>) -> ControlFlow<()>,
+    ) -> Result<(), SamplingError> {
+        for sample in self.points()? {
+            if visit(sample?).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes positions into the caller's buffer, in the order of the walk, until it is full.
+    /// Allocates nothing.
+    ///
+    /// The fastest way: ground of constant importance is copied from the tables block by block.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit); the buffer then holds some of the points.
+    pub fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
+        walk::fill::fill(self, buffer)
+    }
+
+    /// An iterator over the points. It holds its state (some 20 KiB) itself and allocates nothing.
+    ///
+    /// # Errors
+    /// [`SamplingError::Precision`] if the position type cannot represent any point of the domain.
+    pub fn points<P: Position>(&self) -> Result<Points<'a, I, P>, SamplingError> {
+        Points::new(*self)
+    }
+}
+
+/// From importance to ranks: T = importance · magnification, and rank k is accepted iff k + u < T.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RankScale {
+    /// Rank units for importance 1.
+    magnification: f64,
+    /// u, in [0, 1).
+    shift: f64,
+}
+
+impl RankScale {
+    /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
+    /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
+    pub(crate) fn limit(self, value: f64) -> u64 {
+        let limit = value * self.magnification - self.shift;
+        // Truncation takes NaN and negative numbers to 0 and saturates above.
+        let whole = limit as u64;
+        whole.saturating_add(u64::from((whole as f64) < limit))
+    }
+
+    /// `rank < limit(value)`, for a rank below 2⁶³.
+    #[inline(always)]
+    pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {
+        let limit = value * self.magnification - self.shift;
+        // An integer below 2⁵³ is exact as f64, so that comparing there is comparing the integers:
+        // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbour, but so coarse a
+        // limit is an integer itself.
+        if rank < 1 << 53 { (rank as i64 as f64) < limit } else { rank < self.limit(value) }
+    }
+}

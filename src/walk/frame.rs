@@ -1,0 +1,91 @@
+//! From exact points to coordinates: the only place where positions become floating-point numbers.
+
+use core::ops::Range;
+
+use glam::DVec2;
+
+use super::node::ExactPoint;
+use super::scalar::Scalar;
+use crate::tables::Offsets;
+
+/// Coordinates of exact points of one level: origin + half edge · (u + v√3, p + q√3), as complex
+/// numbers. The two products are added before the origin, so that a quarter turn, which only swaps and
+/// negates them, changes no bit of the result: every block in which a point is met gives it the same
+/// position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame<S> {
+    origin: [S; 2],
+    x: [S; 2],
+    y: [S; 2],
+}
+
+impl<S: Scalar> Frame<S> {
+    /// For exact points turned back by `quarters`·90°.
+    pub(crate) fn new(half_edge: DVec2, origin: DVec2, quarters: u8) -> Self {
+        let h = half_edge;
+        let (x, y) = match quarters % 4 {
+            0 => ([h.x, -h.y], [h.y, h.x]),
+            1 => ([-h.y, -h.x], [h.x, -h.y]),
+            2 => ([-h.x, h.y], [-h.y, -h.x]),
+            _ => ([h.y, h.x], [-h.x, h.y]),
+        };
+        Self {
+            origin: origin.to_array().map(S::from_f64),
+            x: x.map(S::from_f64),
+            y: y.map(S::from_f64),
+        }
+    }
+
+    /// The coordinates, relative to the domain's least corner.
+    #[inline(always)]
+    pub(crate) fn position(&self, at: ExactPoint) -> [S; 2] {
+        let x = S::from_i32(at.u) + S::SQRT_3 * S::from_i32(at.v);
+        let y = S::from_i32(at.p) + S::SQRT_3 * S::from_i32(at.q);
+        [
+            self.origin[0] + (self.x[0] * x + self.x[1] * y),
+            self.origin[1] + (self.y[0] * x + self.y[1] * y),
+        ]
+    }
+}
+
+/// Candidates of one block that are born at the same level: one frame, one centre, a run of offsets.
+pub(crate) struct Segment<'t, S> {
+    pub(crate) frame: Frame<S>,
+    pub(crate) centre: ExactPoint,
+    pub(crate) offsets: Offsets<'t>,
+}
+
+impl<'t, S: Scalar> Segment<'t, S> {
+    /// The run `range` of a block's offsets.
+    pub(crate) fn new(
+        frame: Frame<S>,
+        centre: ExactPoint,
+        offsets: &Offsets<'t>,
+        range: Range<usize>,
+    ) -> Self {
+        let Offsets { u, v, p, q } = *offsets;
+        let offsets = Offsets {
+            u: &u[range.clone()],
+            v: &v[range.clone()],
+            p: &p[range.clone()],
+            q: &q[range],
+        };
+        Self { frame, centre, offsets }
+    }
+
+    /// Hands each position, relative to the domain's least corner, to `put(i, x, y)`. A plain loop
+    /// over four arrays of one length, which compilers turn into vector instructions.
+    #[inline(always)]
+    pub(crate) fn for_each(&self, mut put: impl FnMut(usize, S, S)) {
+        let Self { frame, centre, offsets: Offsets { u, v, p, q } } = *self;
+        let n = u.len();
+        let (v, p, q) = (&v[..n], &p[..n], &q[..n]);
+        let field = |bytes: [u8; 2]| i32::from(i16::from_le_bytes(bytes));
+        for i in 0..n {
+            let offset =
+                ExactPoint { u: field(u[i]), v: field(v[i]), p: field(p[i]), q: field(q[i]) };
+            let [x, y] = frame.position(centre.plus(offset));
+            put(i, x, y);
+        }
+    }
+}

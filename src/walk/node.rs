@@ -1,0 +1,111 @@
+//! A tile on the way: exact coordinates relative to the placement, and its rank.
+
+use glam::DVec2;
+
+use crate::tables::Tables;
+use crate::tiling::TileType;
+use crate::tiling::cyclotomic::SQRT_3;
+
+/// ((u + v√3)/2, (p + q√3)/2): an exact point, in edges of some level, relative to the placement's
+/// reference tile. 32 bits hold it: a domain is at most 2²⁴ edges of level 16 wide (see
+/// [`Placement`](crate::Placement)).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct ExactPoint {
+    pub(crate) u: i32,
+    pub(crate) v: i32,
+    pub(crate) p: i32,
+    pub(crate) q: i32,
+}
+
+impl ExactPoint {
+    /// The same point in edges one level finer: times λ = 2 + √3.
+    pub(crate) fn finer(self) -> Self {
+        let Self { u, v, p, q } = self;
+        Self { u: 2 * u + 3 * v, v: u + 2 * v, p: 2 * p + 3 * q, q: p + 2 * q }
+    }
+
+    /// Turned by −90°·`quarters`.
+    pub(crate) fn turned_back(self, quarters: u8) -> Self {
+        let Self { u, v, p, q } = self;
+        match quarters % 4 {
+            0 => self,
+            1 => Self { u: p, v: q, p: -u, q: -v },
+            2 => Self { u: -u, v: -v, p: -p, q: -q },
+            _ => Self { u: -p, v: -q, p: u, q: v },
+        }
+    }
+
+    /// The sum.
+    #[inline(always)]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { u: self.u + other.u, v: self.v + other.v, p: self.p + other.p, q: self.q + other.q }
+    }
+
+    /// The difference.
+    pub(crate) fn minus(self, other: Self) -> Self {
+        self.plus(Self { u: -other.u, v: -other.v, p: -other.p, q: -other.q })
+    }
+
+    /// Rounded coordinates, in edges.
+    pub(crate) fn to_dvec2(self) -> DVec2 {
+        let [u, v, p, q] = [self.u, self.v, self.p, self.q].map(f64::from);
+        0.5 * DVec2::new(u + SQRT_3 * v, p + SQRT_3 * q)
+    }
+}
+
+/// A tile of the walk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub(crate) kind: TileType,
+    /// 0..12, in units of 30°.
+    pub(crate) rotation: u8,
+    /// Levels below the root.
+    pub(crate) level: u8,
+    /// The level at which the tile's centre first was a tile centre, but not before the frontier.
+    pub(crate) born: u8,
+    /// The centre in edges of `level`.
+    pub(crate) centre: ExactPoint,
+    /// The centre in edges of `born`. A point is always computed from here, so that its bits do not
+    /// depend on the level at which it is met.
+    pub(crate) centre_at_birth: ExactPoint,
+    pub(crate) rank: u64,
+}
+
+impl Node {
+    /// The root `a`, unrotated at the origin.
+    pub(crate) fn root() -> Self {
+        Self {
+            kind: TileType::A,
+            rotation: 0,
+            level: 0,
+            born: 0,
+            centre: ExactPoint::default(),
+            centre_at_birth: ExactPoint::default(),
+            rank: 0,
+        }
+    }
+
+    /// The child with this digit, or `None` if there is none. `tiles` and `tiles_before` are N_m and
+    /// N_{m−1} of this node's level.
+    pub(crate) fn child(
+        &self,
+        tables: &Tables<'_>,
+        digit: usize,
+        tiles: u64,
+        tiles_before: u64,
+    ) -> Option<Self> {
+        let (kind, turn) = *tables.child_kinds(self.kind).get(digit)?;
+        let (level, rotation) = (self.level + 1, (self.rotation + turn) % 12);
+        if digit == 0 {
+            // The centre child is the same point with the same rank.
+            return Some(Self { kind, rotation, level, centre: self.centre.finer(), ..*self });
+        }
+        let offset = tables.block(self.kind).offset(usize::from(self.rotation % 3), digit);
+        // Three quarter turns back are one forward, and so on.
+        let offset = offset.turned_back(4 - self.rotation / 3);
+        let centre = self.centre.finer().plus(offset);
+        let (a, b) = tables.block(self.kind).rank_coefficients(digit);
+        let rank = self.rank + u64::from(a) * tiles - u64::from(b) * tiles_before;
+        Some(Self { kind, rotation, level, born: level, centre, centre_at_birth: centre, rank })
+    }
+}
