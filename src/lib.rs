@@ -53,11 +53,15 @@ pub mod bake;
 mod clip;
 mod domain;
 pub mod importance;
+#[cfg(feature = "measure")]
+pub mod measure;
 #[cfg(test)]
 mod oracle;
 pub mod paper;
 mod placement;
 mod points;
+#[cfg(feature = "train")]
+pub mod relax;
 mod sampling;
 mod seed;
 mod tables;
