@@ -62,6 +62,7 @@ mod placement;
 mod points;
 #[cfg(feature = "train")]
 pub mod relax;
+mod relaxed;
 mod sampling;
 mod seed;
 mod tables;
@@ -69,9 +70,12 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
-pub use importance::{Constant, Function, ImageMap, Importance, InvalidPixels, MapError};
+pub use importance::{
+    Around, Constant, Function, ImageMap, Importance, Interpolation, InvalidPixels, MapError,
+};
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
+pub use relaxed::RelaxationTable;
 pub use sampling::{Amount, Limits, Sampling, SamplingError};
 pub use tables::{BlockTable, Tables, TablesError};
 pub use walk::scalar::{Position, Scalar};

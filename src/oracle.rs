@@ -132,7 +132,7 @@ mod tests {
             prop_assume!(map.mean() > 0.0);
             for depth in 1..=bake::MAX_DEPTH {
                 let rules = Tables::built_in().rules();
-                let bytes = bake::bake(&rules, depth).unwrap();
+                let bytes = bake::bake(&rules, depth, None).unwrap();
                 let tables = Tables::from_bytes(&bytes).unwrap();
                 let placement = Placement::with_tables(map.domain(), seed, tables);
                 let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();

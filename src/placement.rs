@@ -3,12 +3,14 @@
 use glam::DVec2;
 
 use crate::domain::{Domain, Region};
+use crate::relaxed::RelaxationTable;
 use crate::seed::SplitMix64;
 use crate::tables::Tables;
 use crate::tiling::MAX_LEVEL;
 use crate::tiling::cyclotomic::SQRT_3;
 use crate::walk::leaf::tile_counts;
 use crate::walk::node::{ExactPoint, Node};
+use crate::walk::relaxed::FIRST_RELAXED_LEVEL;
 
 /// The level of the few tiles at which every walk of a placement starts.
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
@@ -16,7 +18,7 @@ pub(crate) const FRONTIER_LEVEL: u8 = 4;
 /// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
 /// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]); no more than 9
 /// such points fit.
-const MAX_FRONTIER: usize = 12;
+const MAX_FRONTIER: usize = 24;
 
 /// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times
 /// that, 258 diagonals: roots under 128 domain widths give measurably biased sets, because a window
@@ -105,7 +107,10 @@ impl<'t> Placement<'t> {
             let to_domain = centre * lambda_power(node.level.into()) - node.centre.to_dvec2();
             let half_diagonal =
                 0.5 / FRONTIER_EDGE / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
-            if to_domain.length() > REACH + half_diagonal + 1e-9 {
+            // Relaxed points move in from farther away.
+            let step = self.tables.relaxation().map_or(0.0, RelaxationTable::longest)
+                / lambda_power(usize::from(FIRST_RELAXED_LEVEL - node.level));
+            if to_domain.length() > REACH + half_diagonal + step + 1e-9 {
                 continue;
             }
             if node.level == FRONTIER_LEVEL {
@@ -176,6 +181,15 @@ impl<'t> Placement<'t> {
     /// Half an edge of `level`, along the tiling's x axis, in units.
     pub(crate) fn half_edge(&self, level: u8) -> DVec2 {
         self.half_edges[usize::from(level)]
+    }
+
+    /// An edge of `level` that makes `rotation`·30° with the tiling's x axis, in units.
+    pub(crate) fn turned_edge(&self, level: u8, rotation: u8) -> DVec2 {
+        const H: f64 = 0.5 * SQRT_3;
+        const COSINES: [f64; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
+        let k = usize::from(rotation % 12);
+        let turn = DVec2::new(COSINES[k], COSINES[(k + 9) % 12]);
+        (2.0 * self.half_edge(level)).rotate(turn)
     }
 
     /// A disc, in units, that holds all descendants of a node, as computed in either precision.

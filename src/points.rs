@@ -7,6 +7,7 @@ use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
 use crate::walk::chunk::{CHUNK, Chunk};
 use crate::walk::leaf::Leaf;
+use crate::walk::relaxed::{RelaxedLeaf, RelaxedTraversal};
 use crate::walk::scalar::{Position, Scalar};
 use crate::walk::traverse::Traversal;
 
@@ -36,8 +37,8 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
-    traversal: Traversal,
-    leaf: Option<Leaf>,
+    traversal: AnyTraversal,
+    leaf: Option<AnyLeaf>,
     /// The next candidate of the leaf.
     candidate: usize,
     chunk: Chunk<P::Scalar>,
@@ -51,7 +52,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
         let domain = sampling.placement().domain();
         Ok(Self {
-            traversal: Traversal::new(&sampling, Clip::domain(&domain)),
+            traversal: AnyTraversal::new(&sampling, Clip::domain(&domain)),
             sampling,
             leaf: None,
             candidate: 0,
@@ -66,7 +67,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     fn next_chunk(&mut self) -> Result<bool, SamplingError> {
         loop {
             let leaf = match self.leaf {
-                Some(leaf) if self.candidate < leaf.candidates => leaf,
+                Some(leaf) if self.candidate < leaf.candidates() => leaf,
                 _ => match self.traversal.next_leaf(&self.sampling)? {
                     Some(leaf) => {
                         self.candidate = 0;
@@ -75,9 +76,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
                     None => return Ok(false),
                 },
             };
-            let placement = self.sampling.placement();
-            self.candidate = leaf.fill_chunk(placement, self.candidate, &mut self.chunk);
-            accept(&self.sampling, &leaf, &mut self.chunk)?;
+            self.candidate = leaf.fill_accepted(&self.sampling, self.candidate, &mut self.chunk)?;
             if self.chunk.len > 0 {
                 self.next = 0;
                 return Ok(true);
@@ -89,6 +88,70 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     fn sample(&self, i: usize) -> Sample<P> {
         let position = self.to_caller.place(self.chunk.x[i], self.chunk.y[i]);
         Sample { position, rank: self.chunk.ranks[i] }
+    }
+}
+
+/// A traversal of either mode.
+#[expect(clippy::large_enum_variant, reason = "one value a walk, and nothing may be allocated")]
+#[derive(Clone, Debug)]
+pub(crate) enum AnyTraversal {
+    Fixed(Traversal),
+    Relaxed(RelaxedTraversal),
+}
+
+/// A leaf of either mode.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum AnyLeaf {
+    Fixed(Leaf),
+    Relaxed(RelaxedLeaf),
+}
+
+impl AnyTraversal {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
+        match sampling.relaxation() {
+            None => Self::Fixed(Traversal::new(sampling, clip)),
+            Some(_) => Self::Relaxed(RelaxedTraversal::new(sampling, clip)),
+        }
+    }
+
+    pub(crate) fn next_leaf<I: Importance>(
+        &mut self,
+        sampling: &Sampling<'_, I>,
+    ) -> Result<Option<AnyLeaf>, SamplingError> {
+        Ok(match (self, sampling.relaxation()) {
+            (Self::Relaxed(traversal), Some(relaxation)) => {
+                traversal.next_leaf(sampling, relaxation)?.map(AnyLeaf::Relaxed)
+            }
+            (Self::Relaxed(_), None) => None,
+            (Self::Fixed(traversal), _) => traversal.next_leaf(sampling)?.map(AnyLeaf::Fixed),
+        })
+    }
+}
+
+impl AnyLeaf {
+    pub(crate) fn candidates(&self) -> usize {
+        match self {
+            Self::Fixed(leaf) | Self::Relaxed(RelaxedLeaf { leaf, .. }) => leaf.candidates,
+        }
+    }
+
+    /// Fills `chunk` with the accepted candidates from `start` on. Returns the next candidate.
+    pub(crate) fn fill_accepted<I: Importance, S: Scalar>(
+        &self,
+        sampling: &Sampling<'_, I>,
+        start: usize,
+        chunk: &mut Chunk<S>,
+    ) -> Result<usize, SamplingError> {
+        match (self, sampling.relaxation()) {
+            (Self::Relaxed(leaf), Some(relaxation)) => {
+                leaf.fill_chunk(sampling, relaxation, start, chunk)
+            }
+            (Self::Fixed(leaf) | Self::Relaxed(RelaxedLeaf { leaf, .. }), _) => {
+                let next = leaf.fill_chunk(sampling.placement(), start, chunk);
+                accept(sampling, leaf, chunk)?;
+                Ok(next)
+            }
+        }
     }
 }
 

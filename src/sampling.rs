@@ -9,6 +9,7 @@ use crate::domain::Region;
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::points::{Filled, Points, Sample};
+use crate::relaxed::RelaxationTable;
 use crate::tiling::{MAX_LEVEL, TileCounts};
 use crate::walk::{self, scalar::Position};
 
@@ -87,6 +88,8 @@ pub enum SamplingError {
         /// The limit.
         limit: u64,
     },
+    /// The placement's tables have no relaxed offsets.
+    NoRelaxation,
     /// No number of the position type lies in the domain: it is too small, too far from the origin.
     Precision,
 }
@@ -116,6 +119,7 @@ impl fmt::Display for SamplingError {
                 at.x, at.y
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
+            Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
             Self::Precision => {
                 f.write_str("no number of this precision lies in the domain; use DVec2")
             }
@@ -137,6 +141,7 @@ pub struct Sampling<'a, I> {
     scale: RankScale,
     expected: Option<f64>,
     limits: Limits,
+    relaxed: bool,
 }
 
 // Derived, these would ask the importance itself to be `Copy`.
@@ -195,6 +200,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
             },
             expected,
             limits,
+            relaxed: false,
         };
         let region = domain.region();
         let bound = importance.upper_bound(&region);
@@ -205,6 +211,29 @@ impl<'a, I: Importance> Sampling<'a, I> {
             return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
         }
         Ok(sampling)
+    }
+
+    /// The same points, moved aside by the tables' relaxed offsets, so that they are even at every
+    /// density.
+    ///
+    /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
+    /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
+    /// (by 4 % and more). Not progressive either: a point's place depends on the density around it.
+    /// Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
+    /// points stay at their centres.
+    ///
+    /// # Errors
+    /// [`SamplingError::NoRelaxation`] if the placement's tables have no relaxed offsets.
+    pub fn relaxed(self) -> Result<Self, SamplingError> {
+        match self.placement.tables().relaxation() {
+            Some(_) => Ok(Self { relaxed: true, ..self }),
+            None => Err(SamplingError::NoRelaxation),
+        }
+    }
+
+    /// The offsets by which points are moved, in relaxed mode.
+    pub(crate) fn relaxation(&self) -> Option<&'a RelaxationTable<'a>> {
+        if self.relaxed { self.placement.tables().relaxation() } else { None }
     }
 
     /// The placement.
@@ -308,6 +337,11 @@ pub(crate) struct RankScale {
 }
 
 impl RankScale {
+    /// T, in rank units.
+    pub(crate) fn threshold(self, value: f64) -> f64 {
+        value * self.magnification
+    }
+
     /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
     /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
     pub(crate) fn limit(self, value: f64) -> u64 {

@@ -180,7 +180,11 @@ impl fmt::Display for RelaxationError {
                 write!(f, "{} layer, slot {slot}: the scale is no number >= 0", name(layer))
             }
             Self::VectorCount { layer, slot, found } => {
-                write!(f, "{} layer, slot {slot}: {found} vectors are too few or too many", name(layer))
+                write!(
+                    f,
+                    "{} layer, slot {slot}: {found} vectors are too few or too many",
+                    name(layer)
+                )
             }
         }
     }
@@ -338,7 +342,9 @@ impl Relaxation {
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend(self.digits.iter().flatten());
         let text = self.provenance.as_bytes();
-        bytes.extend(u16::try_from(text.len()).map_err(|_| RelaxationError::Provenance)?.to_le_bytes());
+        bytes.extend(
+            u16::try_from(text.len()).map_err(|_| RelaxationError::Provenance)?.to_le_bytes(),
+        );
         bytes.extend(text);
         bytes.push(1 + u8::from(self.rough.is_some()));
         for layer in core::iter::once(&self.smooth).chain(&self.rough) {
@@ -371,7 +377,8 @@ impl Relaxation {
         if found != VERSION {
             return Err(RelaxationError::Version { found });
         }
-        let Some((body, sum)) = bytes.split_last_chunk::<4>().filter(|b| b.0.len() >= HEADER) else {
+        let Some((body, sum)) = bytes.split_last_chunk::<4>().filter(|b| b.0.len() >= HEADER)
+        else {
             return Err(RelaxationError::Truncated { offset: reader.offset });
         };
         let (stored, computed) = (u32::from_le_bytes(*sum), crc32fast::hash(body));

@@ -5,8 +5,8 @@ use core::fmt;
 
 use glam::DVec2;
 
-use super::Importance;
 use super::pyramid::MaxPyramid;
+use super::{Around, Importance};
 use crate::domain::{Domain, Region};
 
 /// What to do with pixels that are no importance.
@@ -73,7 +73,17 @@ impl fmt::Display for MapError {
 
 impl core::error::Error for MapError {}
 
-/// An image as importance: each pixel's value holds over the pixel's whole half-open square.
+/// What an image is between the centres of its pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Interpolation {
+    /// Each pixel's value holds over the pixel's whole half-open square.
+    #[default]
+    Nearest,
+    /// Linear in x and in y between the centres of four neighbouring pixels.
+    Bilinear,
+}
+
+/// An image as importance, constant over each pixel or bilinear between their centres.
 ///
 /// The image is stretched over a [`Domain`], by default [0, width) × [0, height): x to the right,
 /// y down, row by row. Outside its domain the nearest pixel counts. Keeps a max pyramid, a third of
@@ -88,6 +98,7 @@ pub struct ImageMap {
     sum: f64,
     domain: Domain,
     texels_per_unit: DVec2,
+    interpolation: Interpolation,
 }
 
 impl ImageMap {
@@ -118,7 +129,22 @@ impl ImageMap {
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
-        Ok(Self { width, height, pixels, pyramid, sum, domain, texels_per_unit: DVec2::ONE })
+        Ok(Self {
+            width,
+            height,
+            pixels,
+            pyramid,
+            sum,
+            domain,
+            texels_per_unit: DVec2::ONE,
+            interpolation: Interpolation::Nearest,
+        })
+    }
+
+    /// The same pixels, interpolated otherwise. The integral stays the same.
+    #[must_use]
+    pub fn interpolated(self, interpolation: Interpolation) -> Self {
+        Self { interpolation, ..self }
     }
 
     /// The same pixels stretched over another rectangle.
@@ -153,11 +179,30 @@ impl ImageMap {
         self.sum / self.pixels.len() as f64
     }
 
-    /// Column and row of the pixel under a point, clamped to the image.
-    fn texel(&self, at: DVec2) -> (usize, usize) {
-        let t = (at - self.domain.min()) * self.texels_per_unit;
+    /// A place in texels: column and row are its whole parts.
+    fn texels(&self, at: DVec2) -> DVec2 {
+        (at - self.domain.min()) * self.texels_per_unit
+    }
+
+    /// Column and row of the pixel at a place in texels, clamped to the image.
+    fn pixel(&self, t: DVec2) -> (usize, usize) {
         // `as` takes negative numbers and NaN to 0.
         ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
+    }
+
+    /// Between the four pixel centres around a place in texels, clamped to the image.
+    fn bilinear(&self, t: DVec2) -> f64 {
+        let corner = (t - 0.5).max(DVec2::ZERO);
+        let (x0, y0) = self.pixel(corner);
+        let (x1, y1) = ((x0 + 1).min(self.width - 1), (y0 + 1).min(self.height - 1));
+        // Past the last centre both neighbours are the same pixel, whatever the weight.
+        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
+        let pixel = |x: usize, y: usize| f64::from(self.pixels[y * self.width + x]);
+        let (a, b, c, d) = (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
+        let upper = a + (b - a) * weight.x;
+        let lower = c + (d - c) * weight.x;
+        // Rounding must not carry the value past its own bound.
+        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
     }
 }
 
@@ -180,14 +225,52 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
 
 impl Importance for ImageMap {
     fn value(&self, at: DVec2) -> f64 {
-        let (x, y) = self.texel(at);
-        f64::from(self.pixels[y * self.width + x])
+        let t = self.texels(at);
+        match self.interpolation {
+            Interpolation::Nearest => {
+                let (x, y) = self.pixel(t);
+                f64::from(self.pixels[y * self.width + x])
+            }
+            Interpolation::Bilinear => self.bilinear(t),
+        }
     }
 
     fn upper_bound(&self, region: &Region) -> f64 {
-        let (x0, y0) = self.texel(region.centre - region.radius);
-        let (x1, y1) = self.texel(region.centre + region.radius);
+        let (low, high) = (
+            self.texels(region.centre - region.radius),
+            self.texels(region.centre + region.radius),
+        );
+        // Bilinear values depend on the pixels whose centres lie less than one pixel away.
+        let margin = match self.interpolation {
+            Interpolation::Nearest => 0.0,
+            Interpolation::Bilinear => 0.5,
+        };
+        let ((x0, y0), (x1, y1)) = (self.pixel(low - margin), self.pixel(high + margin));
         f64::from(self.pyramid.max(&self.pixels, self.width, [x0, x1], [y0, y1]))
+    }
+
+    fn around(&self, at: DVec2, half_side: f64) -> Around {
+        let t = self.texels(at);
+        let half = half_side * self.texels_per_unit;
+        // Pixels that the square covers at least in part; outside the image its border counts.
+        let axis = |low: f64, high: f64| {
+            let (first, last) = (libm::floor(low) as i64, libm::ceil(high) as i64);
+            (first..last.max(first + 1))
+                .map(move |i| (i, (high.min((i + 1) as f64) - low.max(i as f64)).max(0.0)))
+        };
+        let inside = |i: i64, count: usize| i.clamp(0, count as i64 - 1) as usize;
+        let (mut sum, mut area, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0f64);
+        for (y, height) in axis(t.y - half.y, t.y + half.y) {
+            let row = &self.pixels[inside(y, self.height) * self.width..][..self.width];
+            for (x, width) in axis(t.x - half.x, t.x + half.x) {
+                let value = f64::from(row[inside(x, self.width)]);
+                sum += value * (width * height);
+                area += width * height;
+                (least, most) = (least.min(value), most.max(value));
+            }
+        }
+        let mean = if area > 0.0 { sum / area } else { most };
+        Around { mean, least, most }
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {

@@ -11,7 +11,7 @@ mod pyramid;
 
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
-pub use map::{ImageMap, InvalidPixels, MapError};
+pub use map::{ImageMap, Interpolation, InvalidPixels, MapError};
 
 use glam::DVec2;
 
@@ -49,12 +49,32 @@ pub trait Importance {
         None
     }
 
+    /// What lies in the square of half-side `half_side` about a point, in the caller's units: relaxed
+    /// points read how even the density is there. Importance that does not override this is taken to
+    /// be even.
+    fn around(&self, at: DVec2, half_side: f64) -> Around {
+        let _ = half_side;
+        let value = self.value(at);
+        Around { mean: value, least: value, most: value }
+    }
+
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
     /// test of their own.
     fn is_constant(&self, region: &Region) -> bool {
         let _ = region;
         false
     }
+}
+
+/// The importance in a square about a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// Its mean.
+    pub mean: f64,
+    /// A value that it hardly falls below.
+    pub least: f64,
+    /// A value that it hardly exceeds.
+    pub most: f64,
 }
 
 impl<I: Importance + ?Sized> Importance for &I {
@@ -68,6 +88,10 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
         (**self).integral(domain)
+    }
+
+    fn around(&self, at: DVec2, half_side: f64) -> Around {
+        (**self).around(at, half_side)
     }
 
     fn is_constant(&self, region: &Region) -> bool {

@@ -99,15 +99,15 @@ impl Sums {
         let (x, y) = (p.x as usize, p.y as usize);
         let (fx, fy) = (p.x - x as f64, p.y - y as f64);
         let rows = self.sums.len() / self.stride;
-        let at = |x: usize, y: usize| {
-            self.sums[y.min(rows - 1) * self.stride + x.min(self.stride - 1)]
-        };
+        let at =
+            |x: usize, y: usize| self.sums[y.min(rows - 1) * self.stride + x.min(self.stride - 1)];
         (at(x, y) * (1.0 - fx) + at(x + 1, y) * fx) * (1.0 - fy)
             + (at(x, y + 1) * (1.0 - fx) + at(x + 1, y + 1) * fx) * fy
     }
 
     fn rectangle(&self, min: DVec2, max: DVec2) -> f64 {
-        self.corner(max) - self.corner(DVec2::new(min.x, max.y))
+        self.corner(max)
+            - self.corner(DVec2::new(min.x, max.y))
             - self.corner(DVec2::new(max.x, min.y))
             + self.corner(min)
     }

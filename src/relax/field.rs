@@ -79,7 +79,13 @@ pub struct ImageRules {
 
 impl Default for ImageRules {
     fn default() -> Self {
-        Self { accept_radius: 0.0, phase_radius: 1.0, contrast_radius: 1.0, contrast_from: 0.07, contrast_to: 0.6 }
+        Self {
+            accept_radius: 0.0,
+            phase_radius: 1.0,
+            contrast_radius: 1.0,
+            contrast_from: 0.07,
+            contrast_to: 0.6,
+        }
     }
 }
 
@@ -184,15 +190,15 @@ impl Field for Image {
     }
 
     fn bound(&self, p: DVec2, radius: f64) -> f64 {
-        let (pixel, radius) = (self.pixels(p), radius * self.scale + 1.0 + 40.0 * self.rules.accept_radius);
+        let (pixel, radius) =
+            (self.pixels(p), radius * self.scale + 1.0 + 40.0 * self.rules.accept_radius);
         let mut k = 0;
         while k + 1 < self.maxima.len() && f64::from(1u32 << k) < radius {
             k += 1;
         }
         let (level, [w, h]) = &self.maxima[k];
-        let texel = |c: f64, n: usize| {
-            ((libm::floor(c) as i64) >> k).clamp(0, n as i64 - 1) as usize
-        };
+        let texel =
+            |c: f64, n: usize| ((libm::floor(c) as i64) >> k).clamp(0, n as i64 - 1) as usize;
         let mut max = 0.0f32;
         for y in texel(pixel.y - radius, *h)..=texel(pixel.y + radius, *h) {
             for x in texel(pixel.x - radius, *w)..=texel(pixel.x + radius, *w) {

@@ -97,9 +97,8 @@ impl Points {
         let used = || reads.iter().flatten().filter(|r| r.1 > 0.0).map(|r| r.0 as usize);
         let first = used().min().unwrap_or(0);
         let end = used().max().map_or(first, |e| e + 1);
-        let frame = |site: &Site| {
-            DVec2::from(cosine_and_sine(site.rotation)).as_vec2() * site.edge as f32
-        };
+        let frame =
+            |site: &Site| DVec2::from(cosine_and_sine(site.rotation)).as_vec2() * site.edge as f32;
         Self {
             centres: sites.iter().map(|s| s.centre.as_vec2()).collect(),
             frames: sites.iter().map(frame).collect(),

@@ -46,7 +46,8 @@ impl Field for Ramp {
         let ramp = |p: DVec2| from + (to - from) * (0.5 + 0.5 * p.dot(self.along) / self.radius);
         let rise = (to - from).abs() * 0.5 * radius / self.radius;
         let slope = core::f64::consts::TAU * self.wave.length() * radius;
-        let wave = (self.amplitude * libm::sin(core::f64::consts::TAU * (p.dot(self.wave) + self.start))
+        let wave = (self.amplitude
+            * libm::sin(core::f64::consts::TAU * (p.dot(self.wave) + self.start))
             + self.amplitude.abs() * slope)
             .min(self.amplitude.abs());
         let phase = (ramp(p) + rise).max(LEAST_PHASE) * libm::exp(wave);

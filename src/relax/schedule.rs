@@ -37,7 +37,14 @@ impl Grid {
     }
 }
 
-fn stage(sweeps: usize, sigma: f64, stiffness: f64, contact: f64, step: f32, settle: bool) -> Stage {
+fn stage(
+    sweeps: usize,
+    sigma: f64,
+    stiffness: f64,
+    contact: f64,
+    step: f32,
+    settle: bool,
+) -> Stage {
     let law = Law { sigma, stiffness, contact };
     Stage { sweeps, law, step, pull: 0.05, shrink: 0.0, settle }
 }

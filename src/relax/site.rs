@@ -6,8 +6,8 @@ use super::field::{Field, level_of, spacing};
 use super::ground::{Descend, Ground, Region};
 use crate::bake::class::Classes;
 use crate::bake::relaxation::Relaxation;
-use crate::tiling::cyclotomic::SQRT_3;
 use crate::tiling::OutOfRange;
+use crate::tiling::cyclotomic::SQRT_3;
 
 /// A point before it is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -130,7 +130,9 @@ impl Table {
     pub fn resampled(&self, rules: &Rules, mut onto: Self) -> Self {
         for (slot, spec) in onto.slots.iter().enumerate() {
             let (i, w) = self.between(f64::from(spec.tau));
-            for (class, vector) in (0u32..).zip(&mut onto.vectors[onto.starts[slot]..onto.starts[slot + 1]]) {
+            for (class, vector) in
+                (0u32..).zip(&mut onto.vectors[onto.starts[slot]..onto.starts[slot + 1]])
+            {
                 let at = |i: usize| {
                     let fewer = self.slots[i].generations.min(spec.generations);
                     let class = class::coarsened(rules, spec.generations, class, fewer)?;

@@ -3,10 +3,9 @@
 
 use super::chunk::Chunk;
 use super::scalar::Position;
-use super::traverse::Traversal;
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
-use crate::points::{Filled, accept};
+use crate::points::{AnyLeaf, AnyTraversal, Filled};
 use crate::sampling::{Sampling, SamplingError};
 
 /// Writes the sampling's points to `buffer` until either ends.
@@ -17,21 +16,24 @@ pub(crate) fn fill<I: Importance, P: Position>(
     let placement = sampling.placement();
     let domain = placement.domain();
     let to_caller = ToCaller::<P::Scalar>::new(&domain)?;
-    let mut traversal = Traversal::new(sampling, Clip::domain(&domain));
+    let mut traversal = AnyTraversal::new(sampling, Clip::domain(&domain));
     let mut chunk = Chunk::new();
     let mut written = 0;
     while let Some(leaf) = traversal.next_leaf(sampling)? {
         let rest = &mut buffer[written..];
-        if leaf.inside && leaf.all_accepted && leaf.candidates <= rest.len() {
+        if let AnyLeaf::Fixed(leaf) = leaf
+            && leaf.inside
+            && leaf.all_accepted
+            && leaf.candidates <= rest.len()
+        {
             leaf.write_positions(placement, rest);
             to_caller.place_all(&mut rest[..leaf.candidates]);
             written += leaf.candidates;
             continue;
         }
         let mut candidate = 0;
-        while candidate < leaf.candidates {
-            candidate = leaf.fill_chunk(placement, candidate, &mut chunk);
-            accept(sampling, &leaf, &mut chunk)?;
+        while candidate < leaf.candidates() {
+            candidate = leaf.fill_accepted(sampling, candidate, &mut chunk)?;
             let rest = &mut buffer[written..];
             let fitting = chunk.len.min(rest.len());
             for ((slot, x), y) in rest[..fitting].iter_mut().zip(&chunk.x).zip(&chunk.y) {

@@ -3,7 +3,9 @@
 pub(crate) mod chunk;
 pub(crate) mod fill;
 pub(crate) mod frame;
+pub(crate) mod kin;
 pub(crate) mod leaf;
 pub(crate) mod node;
+pub(crate) mod relaxed;
 pub(crate) mod scalar;
 pub(crate) mod traverse;

@@ -1,0 +1,232 @@
+//! The walk in relaxed mode: the same tiles, ranks and acceptance, and then a step aside.
+//!
+//! Every point is accepted or not at its fixed centre, with the importance of the nearest place in the
+//! domain, and then moved by the vector of its classes and of the local density phase. What lies in
+//! the domain is decided by where it ends up. So subtrees are visited whose points can move in: a
+//! vector is at most [`longest`](crate::RelaxationTable) edges of the point's level long, which is at
+//! least one level below the subtree's tile, but for the tile's own centre, whose level can be as
+//! early as its birth.
+
+use glam::DVec2;
+
+use super::chunk::{CHUNK, Chunk};
+use super::kin::{Kin, Relation};
+use super::leaf::{Leaf, count_below, levels_below, tile_counts};
+use super::scalar::Scalar;
+use crate::clip::Clip;
+use crate::domain::Region;
+use crate::importance::{Around, Importance};
+use crate::placement::{FRONTIER_LEVEL, REACH};
+use crate::relaxed::RelaxationTable;
+use crate::sampling::{Sampling, SamplingError};
+use crate::tiling::cyclotomic::SQRT_3;
+use crate::tiling::{MAX_LEVEL, TileCounts};
+
+/// Points of earlier levels stay where they are: they occur where fewer than some four points are
+/// expected in a domain, and the tiles from which they could move in would be very many.
+pub(crate) const FIRST_RELAXED_LEVEL: u8 = FRONTIER_LEVEL + 2;
+
+/// Waiting nodes, as for the fixed walk.
+const STACK: usize = 13 * (MAX_LEVEL - FRONTIER_LEVEL as usize) + 24;
+
+/// δ = 7 + 4√3.
+const DELTA: f64 = 7.0 + 4.0 * SQRT_3;
+
+/// A traversal in progress.
+#[derive(Clone, Debug)]
+pub(crate) struct RelaxedTraversal {
+    stack: [Option<Kin>; STACK],
+    waiting: usize,
+    clip: Clip,
+    tiles_left: u64,
+}
+
+/// A leaf of the relaxed walk.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RelaxedLeaf {
+    pub(crate) leaf: Leaf,
+    kin: Kin,
+}
+
+/// The level L with N_{L−1} < T ≤ N_L, at least 1, and N_{L−1}.
+fn level_of(threshold: f64) -> (u8, f64) {
+    let counts = TileCounts::HEXAGON.all();
+    let level = counts.partition_point(|tiles| (*tiles as f64) < threshold).max(1);
+    (level as u8, counts[level - 1] as f64)
+}
+
+impl RelaxedTraversal {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
+        let placement = sampling.placement();
+        let mut traversal =
+            Self { stack: [None; STACK], waiting: 0, clip, tiles_left: sampling.limits().tiles };
+        for node in placement.frontier().rev() {
+            traversal.push(Kin::frontier(placement.tables(), node));
+        }
+        traversal
+    }
+
+    fn push(&mut self, kin: Kin) {
+        // Never full: see STACK.
+        if let Some(slot) = self.stack.get_mut(self.waiting) {
+            *slot = Some(kin);
+            self.waiting += 1;
+        }
+    }
+
+    fn pop(&mut self) -> Option<Kin> {
+        self.waiting = self.waiting.checked_sub(1)?;
+        self.stack[self.waiting]
+    }
+
+    /// The next block with candidates, or `None` at the end.
+    pub(crate) fn next_leaf<I: Importance>(
+        &mut self,
+        sampling: &Sampling<'_, I>,
+        relaxation: &RelaxationTable<'_>,
+    ) -> Result<Option<RelaxedLeaf>, SamplingError> {
+        let placement = sampling.placement();
+        let domain = placement.domain();
+        let tables = placement.tables();
+        while let Some(kin) = self.pop() {
+            self.tiles_left = self
+                .tiles_left
+                .checked_sub(1)
+                .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
+            let node = kin.node;
+            let region = placement.region(&node);
+            // How far points born in the subtree move, and the node's own centre.
+            let step = |level: u8| {
+                let level = level.max(FIRST_RELAXED_LEVEL).min(MAX_LEVEL as u8);
+                2.0 * placement.half_edge(level).length() * relaxation.longest()
+            };
+            let edge = 2.0 * placement.half_edge(node.level).length();
+            let wide = Region { radius: region.radius + step(node.level + 1), ..region };
+            let own = Region { radius: region.radius - REACH * edge + step(node.born), ..region };
+            let subtree_reaches = self.clip.touches(&wide);
+            if !subtree_reaches && !self.clip.touches(&own) {
+                continue;
+            }
+            // The nearest place of the domain is never farther from the clamped centre than the point
+            // itself from the centre.
+            let nearest = region.centre.clamp(domain.min(), domain.max());
+            let here = Region { centre: nearest, ..region };
+            let bound = sampling.importance().upper_bound(&here);
+            let limit = sampling.rank_limit_of_bound(bound, &here)?;
+            if limit <= node.rank {
+                continue;
+            }
+            let (level, _) = level_of(sampling.scale().threshold(bound));
+            let block = tables.block(node.kind);
+            let leaf = |candidates, inside| RelaxedLeaf {
+                leaf: Leaf { node, candidates, inside, all_accepted: false, bound },
+                kin,
+            };
+            if !subtree_reaches {
+                return Ok(Some(leaf(1, false)));
+            }
+            if level <= node.level + 2
+                && let Some(levels) = levels_below(&node, tables, limit)
+            {
+                let candidates = count_below(&node, block, levels, limit);
+                let inside = self.clip.holds(&wide) && self.clip.holds(&own);
+                return Ok(Some(leaf(candidates, inside)));
+            }
+            let (tiles, before) = tile_counts(node.level);
+            for digit in (0..tables.child_kinds(node.kind).len()).rev() {
+                if let Some(child) = kin.child(tables, digit, tiles, before) {
+                    self.push(child);
+                }
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl RelaxedLeaf {
+    /// Fills `chunk` with the accepted points among the candidates from `start` on, where they are
+    /// moved to, as many as fit. Returns the next candidate.
+    pub(crate) fn fill_chunk<S: Scalar, I: Importance>(
+        &self,
+        sampling: &Sampling<'_, I>,
+        relaxation: &RelaxationTable<'_>,
+        start: usize,
+        chunk: &mut Chunk<S>,
+    ) -> Result<usize, SamplingError> {
+        let placement = sampling.placement();
+        let domain = placement.domain();
+        let [width, height] = domain.size().to_array().map(S::from_f64);
+        // Where a border point that moves in finds its importance.
+        let (low, high) = (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)));
+        let next = self.leaf.fill_chunk(placement, start, chunk);
+        let mut kept = 0;
+        for k in 0..chunk.len.min(CHUNK) {
+            let (x, y, rank) = (chunk.x[k], chunk.y[k], chunk.ranks[k]);
+            let at = (domain.min() + DVec2::new(x.to_f64(), y.to_f64())).clamp(low, high);
+            let value = sampling.importance().value(at);
+            if !(value >= 0.0 && value <= self.leaf.bound) {
+                return Err(SamplingError::InvalidValue { at, value, bound: self.leaf.bound });
+            }
+            if !sampling.scale().accepts(rank, value) {
+                continue;
+            }
+            let [dx, dy] = self.step::<S, I>(sampling, relaxation, start + k, at, value);
+            let (x, y) = (x + dx, y + dy);
+            let zero = S::default();
+            if zero <= x && x < width && zero <= y && y < height {
+                (chunk.x[kept], chunk.y[kept], chunk.ranks[kept]) = (x, y, rank);
+                kept += 1;
+            }
+        }
+        chunk.len = kept;
+        Ok(next)
+    }
+
+    /// How far candidate `i`, accepted at `at` where the importance is `value`, is moved.
+    fn step<S: Scalar, I: Importance>(
+        &self,
+        sampling: &Sampling<'_, I>,
+        relaxation: &RelaxationTable<'_>,
+        i: usize,
+        at: DVec2,
+        value: f64,
+    ) -> [S; 2] {
+        let placement = sampling.placement();
+        let threshold = sampling.scale().threshold(value);
+        let (level, tiles_above) = level_of(threshold);
+        if level < FIRST_RELAXED_LEVEL {
+            return [S::default(); 2];
+        }
+        // One spacing is 1/√density.
+        let spacing = libm::sqrt(placement.ranks_per_density() / threshold);
+        let around = sampling.importance().around(at, spacing);
+        let phase = (sampling.scale().threshold(around.mean) / tiles_above).clamp(1.0, DELTA);
+        let detail = if relaxation.has_rough() { detail(&around) } else { 0.0 };
+        let tables = placement.tables();
+        let (vector, rotation) = if i == 0 {
+            let Relation { class, rotation } = self.kin.of_own_centre(tables, level);
+            (relaxation.vector(class, phase, detail), rotation)
+        } else {
+            let coefficients = tables.block(self.leaf.node.kind).rank_coefficients(i);
+            let Relation { class, rotation } = self.kin.of_entry(coefficients, level);
+            (relaxation.vector(class, phase, detail), rotation)
+        };
+        let [vx, vy] = vector.map(S::from_f64);
+        let frame = placement.turned_edge(level, rotation);
+        let [c, s, minus_s] = [frame.x, frame.y, -frame.y].map(S::from_f64);
+        [c * vx + minus_s * vy, s * vx + c * vy]
+    }
+}
+
+/// The share of the layer for detail: 0 up to a contrast ln(most/least) of 0.07, 1 from 0.6 on.
+fn detail(around: &Around) -> f64 {
+    let Around { least, most, .. } = *around;
+    // e^0.07 and e^0.6, so that even ground and hard edges take no logarithm.
+    if most <= least * 1.072_508_181_254_216_7 {
+        0.0
+    } else if most >= least * 1.822_118_800_390_508_9 {
+        1.0
+    } else {
+        ((libm::log(most / least) - 0.07) / 0.53).clamp(0.0, 1.0)
+    }
+}
