@@ -168,6 +168,32 @@ mod linux {
     }
 
     #[test]
+    fn an_interrupted_run_takes_its_unfinished_file_with_it() {
+        let folder = TempDir::new().unwrap();
+        let target = folder.path().join("dots.svg");
+        for signal in ["-INT", "-TERM"] {
+            let mut child = program()
+                .arg("stipple")
+                .arg(photograph())
+                .args(["--points", "50000000", "-o", target.to_str().unwrap()])
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap();
+            let started = std::time::Instant::now();
+            while names(folder.path()).is_empty() {
+                assert!(started.elapsed().as_secs() < 20, "no temporary file");
+                std::thread::sleep(std::time::Duration::from_millis(5));
+            }
+            // The handler is set a moment after the file appears.
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            let kill = Command::new("kill").args([signal, &child.id().to_string()]).status();
+            assert!(kill.unwrap().success());
+            assert_eq!(child.wait().unwrap().code(), Some(130));
+            assert_eq!(names(folder.path()), [""; 0]);
+        }
+    }
+
+    #[test]
     fn memory_is_in_proportion_to_the_picture() {
         // 16 million pixels: 48 MB of colours and 64 MB of importance, whatever is drawn.
         let folder = TempDir::new().unwrap();
