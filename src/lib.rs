@@ -24,7 +24,7 @@
 //!
 //! # The way of a point
 //!
-//! 1. [`tiling`]: exact integers only. Coordinates in Z[ζ₁₂], production rules, ranks, F-codes.
+//! 1. [`tiling`]: exact integers only. Coordinates in `Z[ζ₁₂]`, production rules, ranks, F-codes.
 //! 2. [`bake`]: `build.rs` subdivides each tile type to a fixed depth and bakes offsets and thresholds;
 //!    [`Tables`] views them where they lie.
 //! 3. [`Placement`]: a seed puts the [`Domain`] somewhere in a root tile at least 128 times as wide.
