@@ -118,6 +118,9 @@ pub fn coarsened(rules: &Rules, generations: usize, class: u32, fewer: usize) ->
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+    use alloc::vec::Vec;
+
     use super::*;
     use crate::tiling::Digits;
 
