@@ -1,13 +1,11 @@
 //! Points: the iterator on which the other ways to receive points are built.
 
-use glam::DVec2;
-
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
-use crate::walk::chunk::{CHUNK, Chunk};
-use crate::walk::leaf::Leaf;
-use crate::walk::scalar::{Position, Scalar};
+use crate::walk::batch::Batch;
+use crate::walk::chunk::Chunk;
+use crate::walk::scalar::Position;
 use crate::walk::traverse::Traversal;
 
 /// A point of the set.
@@ -36,10 +34,11 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
+    clip: Clip,
     traversal: Traversal,
-    leaf: Option<Leaf>,
-    /// The next candidate of the leaf.
-    candidate: usize,
+    batch: Option<Batch>,
+    /// The next entry of the batch.
+    entry: usize,
     chunk: Chunk<P::Scalar>,
     /// The next point of the chunk.
     next: usize,
@@ -48,36 +47,41 @@ pub struct Points<'a, I, P: Position> {
 }
 
 impl<'a, I: Importance, P: Position> Points<'a, I, P> {
-    pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
-        let domain = sampling.placement().domain();
+    pub(crate) fn new(sampling: Sampling<'a, I>, clip: Clip) -> Result<Self, SamplingError> {
         Ok(Self {
-            traversal: Traversal::new(&sampling, Clip::domain(&domain)),
+            to_caller: ToCaller::new(&sampling.placement().domain())?,
+            traversal: Traversal::new(&sampling, clip),
             sampling,
-            leaf: None,
-            candidate: 0,
+            clip,
+            batch: None,
+            entry: 0,
             chunk: Chunk::new(),
             next: 0,
-            to_caller: ToCaller::new(&domain)?,
             failed: false,
         })
     }
 
-    /// Fills the chunk with the next accepted candidates; `false` at the end.
+    /// Fills the chunk with the next points; `false` at the end.
     fn next_chunk(&mut self) -> Result<bool, SamplingError> {
         loop {
-            let leaf = match self.leaf {
-                Some(leaf) if self.candidate < leaf.candidates => leaf,
-                _ => match self.traversal.next_leaf(&self.sampling)? {
-                    Some(leaf) => {
-                        self.candidate = 0;
-                        *self.leaf.insert(leaf)
+            let batch = match self.batch {
+                Some(batch) if self.entry < batch.end => batch,
+                _ => match self.traversal.next_batch(&self.sampling)? {
+                    Some(batch) => {
+                        self.entry = batch.start;
+                        *self.batch.insert(batch)
                     }
                     None => return Ok(false),
                 },
             };
-            let placement = self.sampling.placement();
-            self.candidate = leaf.fill_chunk(placement, self.candidate, &mut self.chunk);
-            accept(&self.sampling, &leaf, &mut self.chunk)?;
+            self.entry = self.chunk.select::<I, P>(
+                &self.sampling,
+                &self.clip,
+                &self.to_caller,
+                &batch,
+                self.entry,
+            )?;
+            self.chunk.pack();
             if self.chunk.len > 0 {
                 self.next = 0;
                 return Ok(true);
@@ -85,40 +89,15 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
         }
     }
 
-    /// Point `i` of the chunk in the caller's coordinates.
-    fn sample(&self, i: usize) -> Sample<P> {
-        let position = self.to_caller.place(self.chunk.x[i], self.chunk.y[i]);
-        Sample { position, rank: self.chunk.ranks[i] }
+    /// Point `i` of the chunk.
+    fn sample(&self, i: usize) -> Option<Sample<P>> {
+        let batch = self.batch.as_ref()?;
+        let block = batch.block(self.sampling.placement());
+        Some(Sample {
+            position: self.to_caller.place(self.chunk.x[i], self.chunk.y[i]),
+            rank: batch.rank(block, self.chunk.entry[i].into()),
+        })
     }
-}
-
-/// Keeps the candidates that lie in the domain and whose importance reaches their rank.
-pub(crate) fn accept<I: Importance, S: Scalar>(
-    sampling: &Sampling<'_, I>,
-    leaf: &Leaf,
-    chunk: &mut Chunk<S>,
-) -> Result<(), SamplingError> {
-    let domain = sampling.placement().domain();
-    if !leaf.inside {
-        let [width, height] = domain.size().to_array().map(S::from_f64);
-        chunk.retain_inside(width, height);
-    }
-    if leaf.all_accepted {
-        return Ok(());
-    }
-    let len = chunk.len;
-    let mut values = [0.0; CHUNK];
-    let values_here = &mut values[..len];
-    sampling.importance().values(domain.min(), &chunk.x[..len], &chunk.y[..len], values_here);
-    // One comparison that is false for NaN, so that no broken promise passes.
-    let broken = |value: &f64| !(*value >= 0.0 && *value <= leaf.bound);
-    if values_here.iter().any(broken) {
-        let i = values_here.iter().position(broken).unwrap_or(0);
-        let at = domain.min() + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-        return Err(SamplingError::InvalidValue { at, value: values[i], bound: leaf.bound });
-    }
-    chunk.retain_accepted(&values, sampling.scale());
-    Ok(())
 }
 
 impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
@@ -139,7 +118,7 @@ impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
             }
         }
         self.next += 1;
-        Some(Ok(self.sample(self.next - 1)))
+        self.sample(self.next - 1).map(Ok)
     }
 }
 
