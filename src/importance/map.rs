@@ -6,8 +6,10 @@ use core::fmt;
 use glam::DVec2;
 
 use super::Importance;
+use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
 use crate::domain::{Domain, Region};
+use crate::walk::scalar::Scalar;
 
 /// What to do with pixels that are no importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -80,14 +82,12 @@ impl core::error::Error for MapError {}
 /// the pixels' memory.
 #[derive(Clone, Debug)]
 pub struct ImageMap {
-    width: usize,
-    height: usize,
     pixels: Vec<f32>,
     pyramid: MaxPyramid,
     /// Σ pixels, summed in row order.
     sum: f64,
     domain: Domain,
-    texels_per_unit: DVec2,
+    lattice: Lattice,
 }
 
 impl ImageMap {
@@ -118,14 +118,17 @@ impl ImageMap {
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
-        Ok(Self { width, height, pixels, pyramid, sum, domain, texels_per_unit: DVec2::ONE })
+        let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
+        Ok(Self { pixels, pyramid, sum, domain, lattice })
     }
 
     /// The same pixels stretched over another rectangle.
     #[must_use]
     pub fn over(mut self, domain: Domain) -> Self {
         self.domain = domain;
-        self.texels_per_unit = DVec2::new(self.width as f64, self.height as f64) / domain.size();
+        let Lattice { width, height, .. } = self.lattice;
+        let texels_per_unit = DVec2::new(width as f64, height as f64) / domain.size();
+        self.lattice = Lattice::new(width, height, domain.min(), texels_per_unit);
         self
     }
 
@@ -138,7 +141,7 @@ impl ImageMap {
     /// Pixels a row and rows.
     #[must_use]
     pub fn size(&self) -> (usize, usize) {
-        (self.width, self.height)
+        (self.lattice.width, self.lattice.height)
     }
 
     /// The pixels, row by row, as they count (after [`InvalidPixels`]).
@@ -151,13 +154,6 @@ impl ImageMap {
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.sum / self.pixels.len() as f64
-    }
-
-    /// Column and row of the pixel under a point, clamped to the image.
-    fn texel(&self, at: DVec2) -> (usize, usize) {
-        let t = (at - self.domain.min()) * self.texels_per_unit;
-        // `as` takes negative numbers and NaN to 0.
-        ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
     }
 }
 
@@ -180,14 +176,20 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
 
 impl Importance for ImageMap {
     fn value(&self, at: DVec2) -> f64 {
-        let (x, y) = self.texel(at);
-        f64::from(self.pixels[y * self.width + x])
+        let (x, y) = self.lattice.texel(at);
+        f64::from(self.pixels[y * self.lattice.width + x])
     }
 
+    #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        let (x0, y0) = self.texel(region.centre - region.radius);
-        let (x1, y1) = self.texel(region.centre + region.radius);
-        f64::from(self.pyramid.max(&self.pixels, self.width, [x0, x1], [y0, y1]))
+        let (x0, y0) = self.lattice.texel(region.centre - region.radius);
+        let (x1, y1) = self.lattice.texel(region.centre + region.radius);
+        f64::from(self.pyramid.max(&self.pixels, self.lattice.width, [x0, x1], [y0, y1]))
+    }
+
+    #[inline(always)]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
+        self.lattice.values(&self.pixels, origin, x, y, values);
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
@@ -213,11 +215,11 @@ impl ImageMap {
             })
         };
         let (min, max, origin) = (domain.min(), domain.max(), self.domain.min());
-        let scale = self.texels_per_unit;
-        lengths(min.y, max.y, origin.y, scale.y, self.height)
+        let Lattice { width, height, texels_per_unit: scale, .. } = self.lattice;
+        lengths(min.y, max.y, origin.y, scale.y, height)
             .map(|(y, dy)| {
-                let row = &self.pixels[y * self.width..][..self.width];
-                let row_sum: f64 = lengths(min.x, max.x, origin.x, scale.x, self.width)
+                let row = &self.pixels[y * width..][..width];
+                let row_sum: f64 = lengths(min.x, max.x, origin.x, scale.x, width)
                     .map(|(x, dx)| f64::from(row[x]) * dx)
                     .sum();
                 row_sum * dy
