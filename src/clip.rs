@@ -6,28 +6,56 @@ use crate::domain::{Domain, Region};
 use crate::sampling::SamplingError;
 use crate::walk::scalar::{Position, Scalar};
 
-/// The part of the plane from which points are taken.
+/// The part of the plane from which points are taken: a domain, or its part in a rectangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clip {
     min: DVec2,
     max: DVec2,
+    /// Points computed in here lie in the clip however they are rounded.
+    inner_min: DVec2,
+    inner_max: DVec2,
+    rectangle: Option<Domain>,
 }
 
 impl Clip {
+    /// All of a domain.
     pub(crate) fn domain(domain: &Domain) -> Self {
-        Self { min: domain.min(), max: domain.max() }
+        let (min, max) = (domain.min(), domain.max());
+        Self { min, max, inner_min: min, inner_max: max, rectangle: None }
     }
 
-    /// Whether the disc may hold a point of the rectangle.
+    /// The part of a domain that lies in a half-open rectangle; points belong to it by their final
+    /// coordinates.
+    pub(crate) fn rectangle_of(domain: &Domain, rectangle: Domain) -> Self {
+        // Final coordinates are rounded to the position type's precision: up to 2⁻²⁴ of the largest.
+        let largest = domain.min().abs().max(domain.max().abs()).max_element();
+        let slack = DVec2::splat(largest * (0.5 / 4_194_304.0));
+        Self {
+            min: domain.min().max(rectangle.min() - slack),
+            max: domain.max().min(rectangle.max() + slack),
+            inner_min: domain.min().max(rectangle.min() + slack),
+            inner_max: domain.max().min(rectangle.max() - slack),
+            rectangle: Some(rectangle),
+        }
+    }
+
+    /// The rectangle to which points are clipped, if they are.
+    pub(crate) fn rectangle(&self) -> Option<&Domain> {
+        self.rectangle.as_ref()
+    }
+
+    /// Whether the disc may hold a point of the clip.
+    #[inline(always)]
     pub(crate) fn touches(&self, region: &Region) -> bool {
-        let nearest = region.centre.clamp(self.min, self.max);
+        let nearest = region.centre.max(self.min).min(self.max);
         nearest.distance_squared(region.centre) <= region.radius * region.radius
     }
 
-    /// Whether the disc lies in the rectangle.
+    /// Whether all points in the disc lie in the clip.
+    #[inline(always)]
     pub(crate) fn holds(&self, region: &Region) -> bool {
         let (low, high) = (region.centre - region.radius, region.centre + region.radius);
-        low.cmpge(self.min).all() && high.cmplt(self.max).all()
+        low.cmpge(self.inner_min).all() && high.cmplt(self.inner_max).all()
     }
 }
 
@@ -72,14 +100,9 @@ impl<S: Scalar> ToCaller<S> {
         P::from_xy(within(self.min[0] + x, self.x_range), within(self.min[1] + y, self.y_range))
     }
 
-    /// [`place`](Self::place) for positions that were written relative to the corner.
-    pub(crate) fn place_all<P: Position<Scalar = S>>(&self, positions: &mut [P]) {
-        if !self.at_origin {
-            for position in positions {
-                let [x, y] = position.xy();
-                *position = self.place(x, y);
-            }
-        }
+    /// Whether [`place`](Self::place) changes nothing.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.at_origin
     }
 }
 

@@ -2,13 +2,14 @@
 
 use glam::DVec2;
 
-use crate::domain::{Domain, Region};
+use crate::domain::Domain;
 use crate::relaxed::RelaxationTable;
 use crate::seed::SplitMix64;
 use crate::tables::Tables;
 use crate::tiling::MAX_LEVEL;
 use crate::tiling::cyclotomic::SQRT_3;
-use crate::walk::leaf::tile_counts;
+use crate::walk::batch::tile_counts;
+use crate::walk::frame::Frame;
 use crate::walk::node::{ExactPoint, Node};
 use crate::walk::relaxed::FIRST_RELAXED_LEVEL;
 
@@ -16,8 +17,8 @@ use crate::walk::relaxed::FIRST_RELAXED_LEVEL;
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
 
 /// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
-/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]); no more than 9
-/// such points fit.
+/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
+/// than 9 fit; relaxed points can move in from 0.33 edges farther, which admits 13.
 const MAX_FRONTIER: usize = 24;
 
 /// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times
@@ -28,6 +29,11 @@ const FRONTIER_EDGE: f64 = 4.0 / 3.0;
 /// No descendant of a tile is farther from its centre than this many of its edges: children are at
 /// most 2 cos 15° child edges away, and 2 cos 15°/(λ − 1) = 1/√2 exactly.
 pub(crate) const REACH: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
+/// The part of [`REACH`] that descendants at most 0, 1, 2, 3 levels down come near: a child is within
+/// 2 cos 15°/λ edges, a grandchild within 2 cos 15°(1/λ + 1/λ²), and so on: 1 − λ^−j of the whole.
+/// Rounded up.
+const WITHIN: [f64; 5] = [0.0, 0.732_050_81, 0.928_203_24, 0.980_762_12, 1.0];
 
 /// Every point of the plane within this many edges of an `a` centre is covered by its descendants.
 const INNER_RADIUS: f64 = 1.0 - REACH;
@@ -51,6 +57,11 @@ pub struct Placement<'t> {
     origin: DVec2,
     /// For each level: the vector of half an edge along the tiling's x axis.
     half_edges: [DVec2; MAX_LEVEL + 1],
+    /// For each level: [`REACH`] of its edges, in units.
+    reach: [f64; MAX_LEVEL + 1],
+    /// f32 positions are off by up to 2⁻²¹ diagonals; this is twice that, and what adding the corner
+    /// rounds.
+    slack: f64,
     /// The area of the whole root in squared units.
     root_area: f64,
 }
@@ -85,6 +96,8 @@ impl<'t> Placement<'t> {
             half_edges: core::array::from_fn(|level| {
                 0.5 * (root_edge / lambda_power(level)) * axis
             }),
+            reach: core::array::from_fn(|level| REACH * root_edge / lambda_power(level)),
+            slack: domain.diagonal() * 1e-6 + domain.min().abs().max_element() * 1e-15,
             // A root `a` owns √3/2 squared edges.
             root_area: 0.5 * SQRT_3 * root_edge * root_edge,
         };
@@ -137,7 +150,6 @@ impl<'t> Placement<'t> {
         let (_, reference) = nearest;
         for node in self.frontier.iter_mut().flatten() {
             node.centre = node.centre.minus(reference);
-            (node.born, node.centre_at_birth) = (node.level, node.centre);
         }
         let level = usize::from(FRONTIER_LEVEL);
         let from_domain = reference.to_dvec2() - centre * lambda_power(level);
@@ -161,6 +173,11 @@ impl<'t> Placement<'t> {
     /// The tiles at which walks start.
     pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
         self.frontier.iter().flatten()
+    }
+
+    /// Tile `i` of those at which walks start.
+    pub(crate) fn frontier_node(&self, i: usize) -> Option<&Node> {
+        self.frontier.get(i)?.as_ref()
     }
 
     /// The reference tile's centre, relative to the domain's least corner.
@@ -192,16 +209,21 @@ impl<'t> Placement<'t> {
         (2.0 * self.half_edge(level)).rotate(turn)
     }
 
-    /// A disc, in units, that holds all descendants of a node, as computed in either precision.
-    pub(crate) fn region(&self, node: &Node) -> Region {
+    /// A node's centre, relative to the domain's least corner.
+    pub(crate) fn centre(&self, node: &Node) -> DVec2 {
         let half_edge = self.half_edge(node.level);
-        let doubled = 2.0 * node.centre.to_dvec2();
-        let edge = 2.0 * half_edge.length();
-        Region {
-            centre: self.domain.min() + (self.origin + half_edge.rotate(doubled)),
-            // f32 positions are off by up to 2⁻²¹ diagonals (tests/accuracy.rs).
-            radius: REACH * edge + self.domain.diagonal() * 1e-6,
-        }
+        DVec2::from_array(Frame::new(half_edge, self.origin, 0).position(node.centre))
+    }
+
+    /// The radius, in units, of a disc around a node's centre that holds all descendants of the node
+    /// that are born at most `levels` levels below it, as computed in either precision.
+    pub(crate) fn reach(&self, level: u8, levels: usize) -> f64 {
+        self.reach[usize::from(level)] * WITHIN[levels.min(WITHIN.len() - 1)] + self.slack
+    }
+
+    /// The most by which a computed position is off, in units.
+    pub(crate) fn slack(&self) -> f64 {
+        self.slack
     }
 }
 

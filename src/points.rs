@@ -1,15 +1,11 @@
 //! Points: the iterator on which the other ways to receive points are built.
 
-use glam::DVec2;
-
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
-use crate::walk::chunk::{CHUNK, Chunk};
-use crate::walk::leaf::Leaf;
-use crate::walk::relaxed::{RelaxedLeaf, RelaxedTraversal};
-use crate::walk::scalar::{Position, Scalar};
-use crate::walk::traverse::Traversal;
+use crate::walk::chunk::Chunk;
+use crate::walk::either::{AnyBatch, AnyTraversal};
+use crate::walk::scalar::Position;
 
 /// A point of the set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,10 +33,11 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
+    clip: Clip,
     traversal: AnyTraversal,
-    leaf: Option<AnyLeaf>,
-    /// The next candidate of the leaf.
-    candidate: usize,
+    batch: Option<AnyBatch>,
+    /// The next entry of the batch.
+    entry: usize,
     chunk: Chunk<P::Scalar>,
     /// The next point of the chunk.
     next: usize,
@@ -49,34 +46,41 @@ pub struct Points<'a, I, P: Position> {
 }
 
 impl<'a, I: Importance, P: Position> Points<'a, I, P> {
-    pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
-        let domain = sampling.placement().domain();
+    pub(crate) fn new(sampling: Sampling<'a, I>, clip: Clip) -> Result<Self, SamplingError> {
         Ok(Self {
-            traversal: AnyTraversal::new(&sampling, Clip::domain(&domain)),
+            to_caller: ToCaller::new(&sampling.placement().domain())?,
+            traversal: AnyTraversal::new(&sampling, clip),
             sampling,
-            leaf: None,
-            candidate: 0,
+            clip,
+            batch: None,
+            entry: 0,
             chunk: Chunk::new(),
             next: 0,
-            to_caller: ToCaller::new(&domain)?,
             failed: false,
         })
     }
 
-    /// Fills the chunk with the next accepted candidates; `false` at the end.
+    /// Fills the chunk with the next points; `false` at the end.
     fn next_chunk(&mut self) -> Result<bool, SamplingError> {
         loop {
-            let leaf = match self.leaf {
-                Some(leaf) if self.candidate < leaf.candidates() => leaf,
-                _ => match self.traversal.next_leaf(&self.sampling)? {
-                    Some(leaf) => {
-                        self.candidate = 0;
-                        *self.leaf.insert(leaf)
+            let batch = match self.batch {
+                Some(batch) if self.entry < batch.entries().end => batch,
+                _ => match self.traversal.next_batch(&self.sampling)? {
+                    Some(batch) => {
+                        self.entry = batch.entries().start;
+                        *self.batch.insert(batch)
                     }
                     None => return Ok(false),
                 },
             };
-            self.candidate = leaf.fill_accepted(&self.sampling, self.candidate, &mut self.chunk)?;
+            self.entry = batch.select::<I, P>(
+                &self.sampling,
+                &self.clip,
+                &self.to_caller,
+                self.entry,
+                &mut self.chunk,
+            )?;
+            self.chunk.pack();
             if self.chunk.len > 0 {
                 self.next = 0;
                 return Ok(true);
@@ -84,104 +88,15 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
         }
     }
 
-    /// Point `i` of the chunk in the caller's coordinates.
-    fn sample(&self, i: usize) -> Sample<P> {
-        let position = self.to_caller.place(self.chunk.x[i], self.chunk.y[i]);
-        Sample { position, rank: self.chunk.ranks[i] }
-    }
-}
-
-/// A traversal of either mode.
-#[expect(clippy::large_enum_variant, reason = "one value a walk, and nothing may be allocated")]
-#[derive(Clone, Debug)]
-pub(crate) enum AnyTraversal {
-    Fixed(Traversal),
-    Relaxed(RelaxedTraversal),
-}
-
-/// A leaf of either mode.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum AnyLeaf {
-    Fixed(Leaf),
-    Relaxed(RelaxedLeaf),
-}
-
-impl AnyTraversal {
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
-        match sampling.relaxation() {
-            None => Self::Fixed(Traversal::new(sampling, clip)),
-            Some(_) => Self::Relaxed(RelaxedTraversal::new(sampling, clip)),
-        }
-    }
-
-    pub(crate) fn next_leaf<I: Importance>(
-        &mut self,
-        sampling: &Sampling<'_, I>,
-    ) -> Result<Option<AnyLeaf>, SamplingError> {
-        Ok(match (self, sampling.relaxation()) {
-            (Self::Relaxed(traversal), Some(relaxation)) => {
-                traversal.next_leaf(sampling, relaxation)?.map(AnyLeaf::Relaxed)
-            }
-            (Self::Relaxed(_), None) => None,
-            (Self::Fixed(traversal), _) => traversal.next_leaf(sampling)?.map(AnyLeaf::Fixed),
+    /// Point `i` of the chunk.
+    fn sample(&self, i: usize) -> Option<Sample<P>> {
+        let batch = self.batch.as_ref()?.entries();
+        let block = batch.block(self.sampling.placement());
+        Some(Sample {
+            position: self.to_caller.place(self.chunk.x[i], self.chunk.y[i]),
+            rank: batch.rank(block, self.chunk.entry[i].into()),
         })
     }
-}
-
-impl AnyLeaf {
-    pub(crate) fn candidates(&self) -> usize {
-        match self {
-            Self::Fixed(leaf) | Self::Relaxed(RelaxedLeaf { leaf, .. }) => leaf.candidates,
-        }
-    }
-
-    /// Fills `chunk` with the accepted candidates from `start` on. Returns the next candidate.
-    pub(crate) fn fill_accepted<I: Importance, S: Scalar>(
-        &self,
-        sampling: &Sampling<'_, I>,
-        start: usize,
-        chunk: &mut Chunk<S>,
-    ) -> Result<usize, SamplingError> {
-        match (self, sampling.relaxation()) {
-            (Self::Relaxed(leaf), Some(relaxation)) => {
-                leaf.fill_chunk(sampling, relaxation, start, chunk)
-            }
-            (Self::Fixed(leaf) | Self::Relaxed(RelaxedLeaf { leaf, .. }), _) => {
-                let next = leaf.fill_chunk(sampling.placement(), start, chunk);
-                accept(sampling, leaf, chunk)?;
-                Ok(next)
-            }
-        }
-    }
-}
-
-/// Keeps the candidates that lie in the domain and whose importance reaches their rank.
-pub(crate) fn accept<I: Importance, S: Scalar>(
-    sampling: &Sampling<'_, I>,
-    leaf: &Leaf,
-    chunk: &mut Chunk<S>,
-) -> Result<(), SamplingError> {
-    let domain = sampling.placement().domain();
-    if !leaf.inside {
-        let [width, height] = domain.size().to_array().map(S::from_f64);
-        chunk.retain_inside(width, height);
-    }
-    if leaf.all_accepted {
-        return Ok(());
-    }
-    let len = chunk.len;
-    let mut values = [0.0; CHUNK];
-    let values_here = &mut values[..len];
-    sampling.importance().values(domain.min(), &chunk.x[..len], &chunk.y[..len], values_here);
-    // One comparison that is false for NaN, so that no broken promise passes.
-    let broken = |value: &f64| !(*value >= 0.0 && *value <= leaf.bound);
-    if values_here.iter().any(broken) {
-        let i = values_here.iter().position(broken).unwrap_or(0);
-        let at = domain.min() + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-        return Err(SamplingError::InvalidValue { at, value: values[i], bound: leaf.bound });
-    }
-    chunk.retain_accepted(&values, sampling.scale());
-    Ok(())
 }
 
 impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
@@ -202,7 +117,7 @@ impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
             }
         }
         self.next += 1;
-        Some(Ok(self.sample(self.next - 1)))
+        self.sample(self.next - 1).map(Ok)
     }
 }
 

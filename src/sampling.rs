@@ -5,6 +5,7 @@ use core::ops::ControlFlow;
 
 use glam::DVec2;
 
+use crate::clip::Clip;
 use crate::domain::Region;
 use crate::importance::Importance;
 use crate::placement::Placement;
@@ -315,7 +316,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// # Errors
     /// As [`visit`](Self::visit); the buffer then holds some of the points.
     pub fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
-        walk::fill::fill(self, buffer)
+        let clip = Clip::domain(&self.placement.domain());
+        walk::fill::fill(self, clip, buffer)
     }
 
     /// An iterator over the points. It holds its state (some 20 KiB) itself and allocates nothing.
@@ -323,7 +325,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// # Errors
     /// [`SamplingError::Precision`] if the position type cannot represent any point of the domain.
     pub fn points<P: Position>(&self) -> Result<Points<'a, I, P>, SamplingError> {
-        Points::new(*self)
+        Points::new(*self, Clip::domain(&self.placement.domain()))
     }
 }
 
@@ -344,17 +346,24 @@ impl RankScale {
 
     /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
     /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
+    #[inline]
     pub(crate) fn limit(self, value: f64) -> u64 {
-        let limit = value * self.magnification - self.shift;
+        let limit = self.limit_before_rounding(value);
         // Truncation takes NaN and negative numbers to 0 and saturates above.
         let whole = limit as u64;
         whole.saturating_add(u64::from((whole as f64) < limit))
     }
 
+    /// T − u: an integer k below 2⁵³ is under `limit(value)` exactly when k < this.
+    #[inline(always)]
+    pub(crate) fn limit_before_rounding(self, value: f64) -> f64 {
+        value * self.magnification - self.shift
+    }
+
     /// `rank < limit(value)`, for a rank below 2⁶³.
     #[inline(always)]
     pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {
-        let limit = value * self.magnification - self.shift;
+        let limit = self.limit_before_rounding(value);
         // An integer below 2⁵³ is exact as f64, so that comparing there is comparing the integers:
         // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbour, but so coarse a
         // limit is an integer itself.

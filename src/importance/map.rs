@@ -5,9 +5,11 @@ use core::fmt;
 
 use glam::DVec2;
 
+use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
 use super::{Around, Importance};
 use crate::domain::{Domain, Region};
+use crate::walk::scalar::Scalar;
 
 /// What to do with pixels that are no importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -90,14 +92,12 @@ pub enum Interpolation {
 /// the pixels' memory.
 #[derive(Clone, Debug)]
 pub struct ImageMap {
-    width: usize,
-    height: usize,
     pixels: Vec<f32>,
     pyramid: MaxPyramid,
     /// Σ pixels, summed in row order.
     sum: f64,
     domain: Domain,
-    texels_per_unit: DVec2,
+    lattice: Lattice,
     interpolation: Interpolation,
 }
 
@@ -129,19 +129,12 @@ impl ImageMap {
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
-        Ok(Self {
-            width,
-            height,
-            pixels,
-            pyramid,
-            sum,
-            domain,
-            texels_per_unit: DVec2::ONE,
-            interpolation: Interpolation::Nearest,
-        })
+        let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
+        let interpolation = Interpolation::Nearest;
+        Ok(Self { pixels, pyramid, sum, domain, lattice, interpolation })
     }
 
-    /// The same pixels, interpolated otherwise. The integral stays the same.
+    /// The same pixels, interpolated otherwise. The integral over the image stays the same.
     #[must_use]
     pub fn interpolated(self, interpolation: Interpolation) -> Self {
         Self { interpolation, ..self }
@@ -151,7 +144,9 @@ impl ImageMap {
     #[must_use]
     pub fn over(mut self, domain: Domain) -> Self {
         self.domain = domain;
-        self.texels_per_unit = DVec2::new(self.width as f64, self.height as f64) / domain.size();
+        let Lattice { width, height, .. } = self.lattice;
+        let texels_per_unit = DVec2::new(width as f64, height as f64) / domain.size();
+        self.lattice = Lattice::new(width, height, domain.min(), texels_per_unit);
         self
     }
 
@@ -164,7 +159,7 @@ impl ImageMap {
     /// Pixels a row and rows.
     #[must_use]
     pub fn size(&self) -> (usize, usize) {
-        (self.width, self.height)
+        (self.lattice.width, self.lattice.height)
     }
 
     /// The pixels, row by row, as they count (after [`InvalidPixels`]).
@@ -178,32 +173,6 @@ impl ImageMap {
     pub fn mean(&self) -> f64 {
         self.sum / self.pixels.len() as f64
     }
-
-    /// A place in texels: column and row are its whole parts.
-    fn texels(&self, at: DVec2) -> DVec2 {
-        (at - self.domain.min()) * self.texels_per_unit
-    }
-
-    /// Column and row of the pixel at a place in texels, clamped to the image.
-    fn pixel(&self, t: DVec2) -> (usize, usize) {
-        // `as` takes negative numbers and NaN to 0.
-        ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
-    }
-
-    /// Between the four pixel centres around a place in texels, clamped to the image.
-    fn bilinear(&self, t: DVec2) -> f64 {
-        let corner = (t - 0.5).max(DVec2::ZERO);
-        let (x0, y0) = self.pixel(corner);
-        let (x1, y1) = ((x0 + 1).min(self.width - 1), (y0 + 1).min(self.height - 1));
-        // Past the last centre both neighbours are the same pixel, whatever the weight.
-        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
-        let pixel = |x: usize, y: usize| f64::from(self.pixels[y * self.width + x]);
-        let (a, b, c, d) = (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
-        let upper = a + (b - a) * weight.x;
-        let lower = c + (d - c) * weight.x;
-        // Rounding must not carry the value past its own bound.
-        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
-    }
 }
 
 /// Applies the policy to a row and sums it; the first column that it does not admit otherwise.
@@ -211,7 +180,7 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
     let mut sum = 0.0;
     for (x, pixel) in row.iter_mut().enumerate() {
         let value = *pixel;
-        if !(0.0..f32::INFINITY).contains(&value) {
+        if !(value >= 0.0 && value < f32::INFINITY) {
             match invalid {
                 InvalidPixels::ZeroAll => *pixel = 0.0,
                 InvalidPixels::ZeroNegative if value < 0.0 && value.is_finite() => *pixel = 0.0,
@@ -225,52 +194,42 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
 
 impl Importance for ImageMap {
     fn value(&self, at: DVec2) -> f64 {
-        let t = self.texels(at);
         match self.interpolation {
             Interpolation::Nearest => {
-                let (x, y) = self.pixel(t);
-                f64::from(self.pixels[y * self.width + x])
+                let (x, y) = self.lattice.texel(at);
+                f64::from(self.pixels[y * self.lattice.width + x])
             }
-            Interpolation::Bilinear => self.bilinear(t),
+            Interpolation::Bilinear => self.lattice.bilinear(&self.pixels, at),
         }
     }
 
+    #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        let (low, high) = (
-            self.texels(region.centre - region.radius),
-            self.texels(region.centre + region.radius),
-        );
-        // Bilinear values depend on the pixels whose centres lie less than one pixel away.
-        let margin = match self.interpolation {
-            Interpolation::Nearest => 0.0,
-            Interpolation::Bilinear => 0.5,
-        };
-        let ((x0, y0), (x1, y1)) = (self.pixel(low - margin), self.pixel(high + margin));
-        f64::from(self.pyramid.max(&self.pixels, self.width, [x0, x1], [y0, y1]))
+        let (mut low, mut high) = (region.centre - region.radius, region.centre + region.radius);
+        if self.interpolation == Interpolation::Bilinear {
+            // Values depend on the pixels whose centres lie less than one pixel away; a little more
+            // than half a pixel from the square's border outruns rounding.
+            let margin = 0.500_001 / self.lattice.texels_per_unit;
+            (low, high) = (low - margin, high + margin);
+        }
+        let ((x0, y0), (x1, y1)) = (self.lattice.texel(low), self.lattice.texel(high));
+        f64::from(self.pyramid.max(&self.pixels, self.lattice.width, [x0, x1], [y0, y1]))
+    }
+
+    #[inline(always)]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
+        match self.interpolation {
+            Interpolation::Nearest => self.lattice.values(&self.pixels, origin, x, y, values),
+            Interpolation::Bilinear => {
+                for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
+                    *value = self.value(origin + DVec2::new(x.to_f64(), y.to_f64()));
+                }
+            }
+        }
     }
 
     fn around(&self, at: DVec2, half_side: f64) -> Around {
-        let t = self.texels(at);
-        let half = half_side * self.texels_per_unit;
-        // Pixels that the square covers at least in part; outside the image its border counts.
-        let axis = |low: f64, high: f64| {
-            let (first, last) = (libm::floor(low) as i64, libm::ceil(high) as i64);
-            (first..last.max(first + 1))
-                .map(move |i| (i, (high.min((i + 1) as f64) - low.max(i as f64)).max(0.0)))
-        };
-        let inside = |i: i64, count: usize| i.clamp(0, count as i64 - 1) as usize;
-        let (mut sum, mut area, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0f64);
-        for (y, height) in axis(t.y - half.y, t.y + half.y) {
-            let row = &self.pixels[inside(y, self.height) * self.width..][..self.width];
-            for (x, width) in axis(t.x - half.x, t.x + half.x) {
-                let value = f64::from(row[inside(x, self.width)]);
-                sum += value * (width * height);
-                area += width * height;
-                (least, most) = (least.min(value), most.max(value));
-            }
-        }
-        let mean = if area > 0.0 { sum / area } else { most };
-        Around { mean, least, most }
+        self.lattice.around(&self.pixels, at, half_side)
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
@@ -296,11 +255,11 @@ impl ImageMap {
             })
         };
         let (min, max, origin) = (domain.min(), domain.max(), self.domain.min());
-        let scale = self.texels_per_unit;
-        lengths(min.y, max.y, origin.y, scale.y, self.height)
+        let Lattice { width, height, texels_per_unit: scale, .. } = self.lattice;
+        lengths(min.y, max.y, origin.y, scale.y, height)
             .map(|(y, dy)| {
-                let row = &self.pixels[y * self.width..][..self.width];
-                let row_sum: f64 = lengths(min.x, max.x, origin.x, scale.x, self.width)
+                let row = &self.pixels[y * width..][..width];
+                let row_sum: f64 = lengths(min.x, max.x, origin.x, scale.x, width)
                     .map(|(x, dx)| f64::from(row[x]) * dx)
                     .sum();
                 row_sum * dy

@@ -6,6 +6,7 @@
 
 mod constant;
 mod function;
+mod lookup;
 mod map;
 mod pyramid;
 

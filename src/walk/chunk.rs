@@ -1,47 +1,163 @@
-//! Chunks: up to a few hundred candidates in arrays, one pass each for positions, ranks, tests and
-//! packing.
+//! Chunks: up to a few hundred candidates in arrays, one pass each for positions, bounds of the
+//! domain, importance and comparison. Each pass is a loop without branches over arrays, which
+//! compilers turn into vector instructions.
 
-use super::scalar::Scalar;
-use crate::sampling::RankScale;
+use glam::DVec2;
+
+use super::batch::{Batch, tile_counts};
+use super::scalar::{Position, Scalar};
+use crate::clip::{Clip, ToCaller};
+use crate::importance::Importance;
+use crate::sampling::{Sampling, SamplingError};
 
 /// Candidates a chunk. A block of depth 2 fits, and the arrays stay in the first-level cache.
 pub(crate) const CHUNK: usize = 256;
 
-/// Positions relative to the domain's least corner, and ranks.
+/// Ranks below this are exact as `f64`.
+const EXACT: u64 = 1 << 53;
+
+/// Candidates of one batch: positions relative to the domain's least corner, and which to keep.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk<S> {
     pub(crate) len: usize,
     pub(crate) x: [S; CHUNK],
     pub(crate) y: [S; CHUNK],
-    pub(crate) ranks: [u64; CHUNK],
+    /// Which entries of the block they are.
+    pub(crate) entry: [u16; CHUNK],
+    /// 1 for the points of the set, 0 for the others.
+    pub(crate) keep: [u8; CHUNK],
 }
 
 impl<S: Scalar> Chunk<S> {
     pub(crate) fn new() -> Self {
-        Self { len: 0, x: [S::default(); CHUNK], y: [S::default(); CHUNK], ranks: [0; CHUNK] }
+        let zero = S::default();
+        Self { len: 0, x: [zero; CHUNK], y: [zero; CHUNK], entry: [0; CHUNK], keep: [0; CHUNK] }
     }
 
-    /// Keeps the candidates with 0 ≤ x < width and 0 ≤ y < height, in order. Branch-free.
-    pub(crate) fn retain_inside(&mut self, width: S, height: S) {
+    /// Takes the batch's entries from `start` on, as many as fit, and marks the points among them.
+    /// Returns the next entry.
+    #[inline(always)]
+    pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
+        &mut self,
+        sampling: &Sampling<'_, I>,
+        clip: &Clip,
+        to_caller: &ToCaller<S>,
+        batch: &Batch,
+        start: usize,
+    ) -> Result<usize, SamplingError> {
+        let mut next = start;
+        self.len = 0;
+        while self.len < CHUNK && next < batch.end {
+            let (segment, end) = batch.segment::<S>(sampling.placement(), next, CHUNK - self.len);
+            let filled = self.len..self.len + (end - next);
+            segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
+            (self.len, next) = (filled.end, end);
+        }
+        for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
+            // A block has at most 37,829 entries.
+            *entry = (start + i) as u16;
+        }
+        if batch.inside {
+            self.keep[..self.len].fill(1);
+        } else {
+            self.mark_inside::<P>(sampling, clip, to_caller);
+        }
+        if !batch.all_accepted {
+            if !batch.inside {
+                self.pack();
+            }
+            self.mark_accepted(sampling, batch)?;
+        }
+        Ok(next)
+    }
+
+    /// Marks what lies in the half-open domain, and in the clip's rectangle.
+    #[inline(always)]
+    pub(crate) fn mark_inside<P: Position<Scalar = S>>(
+        &mut self,
+        sampling: &Sampling<'_, impl Importance>,
+        clip: &Clip,
+        to_caller: &ToCaller<S>,
+    ) {
+        let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
         let zero = S::default();
+        let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
+        for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
+            *keep = u8::from((zero <= *x) & (*x < width) & (zero <= *y) & (*y < height));
+        }
+        if let Some(rectangle) = clip.rectangle() {
+            let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
+            for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
+                let [x, y] = to_caller.place::<P>(*x, *y).xy();
+                *keep &= u8::from(rectangle.contains(DVec2::new(x.to_f64(), y.to_f64())));
+            }
+        }
+    }
+
+    /// Moves the marked candidates to the front, in order.
+    #[inline(always)]
+    pub(crate) fn pack(&mut self) {
         let mut kept = 0;
         for i in 0..self.len {
-            let (x, y, rank) = (self.x[i], self.y[i], self.ranks[i]);
-            (self.x[kept], self.y[kept], self.ranks[kept]) = (x, y, rank);
-            kept += usize::from((zero <= x) & (x < width) & (zero <= y) & (y < height));
+            let (x, y, entry) = (self.x[i], self.y[i], self.entry[i]);
+            (self.x[kept], self.y[kept], self.entry[kept]) = (x, y, entry);
+            kept += usize::from(self.keep[i] & 1);
         }
         self.len = kept;
     }
 
-    /// Keeps candidate i if its rank is accepted where the importance is `values[i]`, in order.
-    /// Branch-free.
-    pub(crate) fn retain_accepted(&mut self, values: &[f64; CHUNK], scale: RankScale) {
-        let mut kept = 0;
-        for (i, value) in values.iter().enumerate().take(self.len) {
-            let (x, y, rank) = (self.x[i], self.y[i], self.ranks[i]);
-            (self.x[kept], self.y[kept], self.ranks[kept]) = (x, y, rank);
-            kept += usize::from(scale.accepts(rank, *value));
+    /// Marks those whose importance reaches their rank.
+    #[inline(always)]
+    fn mark_accepted<I: Importance>(
+        &mut self,
+        sampling: &Sampling<'_, I>,
+        batch: &Batch,
+    ) -> Result<(), SamplingError> {
+        let len = self.len;
+        let corner = sampling.placement().domain().min();
+        let mut values = [0.0; CHUNK];
+        let values = &mut values[..len];
+        sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
+        // One comparison that is false for NaN, so that no broken promise passes.
+        let sound = |value: f64| (value >= 0.0) & (value <= batch.bound);
+        if !values.iter().fold(true, |all, value| all & sound(*value)) {
+            let i = values.iter().position(|value| !sound(*value)).unwrap_or(0);
+            let at = corner + DVec2::new(self.x[i].to_f64(), self.y[i].to_f64());
+            return Err(SamplingError::InvalidValue { at, value: values[i], bound: batch.bound });
         }
-        self.len = kept;
+
+        let block = batch.block(sampling.placement());
+        let scale = sampling.scale();
+        let (tiles, before) = tile_counts(batch.node.level);
+        let (greatest, _) = block.rank_coefficients(batch.end - 1);
+        let largest_term =
+            batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));
+        if largest_term >= EXACT {
+            for ((keep, entry), value) in self.keep.iter_mut().zip(&self.entry).zip(&*values) {
+                *keep = u8::from(scale.accepts(batch.rank(block, usize::from(*entry)), *value));
+            }
+            return Ok(());
+        }
+        // Every term is an integer below 2⁵³, so that sums and products of them round nothing, and
+        // comparing a rank k with a limit x as f64 is comparing integers: k < x exactly when k < ⌈x⌉.
+        let (tiles, before) = (tiles as f64, before as f64);
+        let own = batch.node.rank as f64;
+        let accepted = |a: u16, b: u16, value: f64| {
+            let rank = own + f64::from(a) * tiles - f64::from(b) * before;
+            u8::from(rank < scale.limit_before_rounding(value))
+        };
+        if batch.inside {
+            let first = usize::from(self.entry[0]);
+            let coefficients = block.rank_coefficients_of(first..first + len);
+            for ((keep, (a, b)), value) in self.keep.iter_mut().zip(coefficients).zip(&*values) {
+                *keep = accepted(a, b, *value);
+            }
+        } else {
+            for ((keep, entry), value) in self.keep.iter_mut().zip(&self.entry).zip(&*values) {
+                let (a, b) = block.rank_coefficients(usize::from(*entry));
+                *keep = accepted(a, b, *value);
+            }
+        }
+        Ok(())
     }
 }

@@ -1,49 +1,159 @@
-//! Filling a caller's buffer: the fast way, with nothing between the tables and the buffer where no
+//! Filling a caller's buffers: the fast way, with nothing between the tables and the buffer where no
 //! test is needed.
 
 use super::chunk::Chunk;
-use super::scalar::Position;
+use super::either::{AnyBatch, AnyTraversal};
+use super::frame::Segment;
+use super::scalar::{Position, Scalar};
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
-use crate::points::{AnyLeaf, AnyTraversal, Filled};
+use crate::points::Filled;
 use crate::sampling::{Sampling, SamplingError};
 
-/// Writes the sampling's points to `buffer` until either ends.
-pub(crate) fn fill<I: Importance, P: Position>(
+/// Where positions go: a buffer of points, or one buffer a coordinate.
+pub(crate) trait Output {
+    type Position: Position;
+    /// How many positions fit.
+    fn room(&self) -> usize;
+    /// Writes one position. `i` < room.
+    fn set(&mut self, i: usize, position: Self::Position);
+    /// Writes a run of candidates from `i` on; `i` + their number ≤ room.
+    fn write(
+        &mut self,
+        i: usize,
+        segment: &Segment<'_, <Self::Position as Position>::Scalar>,
+        to_caller: &ToCaller<<Self::Position as Position>::Scalar>,
+    );
+}
+
+impl<P: Position> Output for &mut [P] {
+    type Position = P;
+
+    fn room(&self) -> usize {
+        self.len()
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, position: P) {
+        self[i] = position;
+    }
+
+    #[inline(always)]
+    fn write(
+        &mut self,
+        i: usize,
+        segment: &Segment<'_, P::Scalar>,
+        to_caller: &ToCaller<P::Scalar>,
+    ) {
+        let slots = &mut self[i..i + segment.len()];
+        if to_caller.is_identity() {
+            segment.write_positions(slots, P::from_xy);
+        } else {
+            segment.write_positions(slots, |x, y| to_caller.place(x, y));
+        }
+    }
+}
+
+/// x[] and y[], of one length.
+pub(crate) struct Columns<'a, P: Position> {
+    pub(crate) x: &'a mut [P::Scalar],
+    pub(crate) y: &'a mut [P::Scalar],
+}
+
+impl<P: Position> Output for Columns<'_, P> {
+    type Position = P;
+
+    fn room(&self) -> usize {
+        self.x.len().min(self.y.len())
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, position: P) {
+        [self.x[i], self.y[i]] = position.xy();
+    }
+
+    #[inline(always)]
+    fn write(
+        &mut self,
+        i: usize,
+        segment: &Segment<'_, P::Scalar>,
+        to_caller: &ToCaller<P::Scalar>,
+    ) {
+        let run = i..i + segment.len();
+        let (x, y) = (&mut self.x[run.clone()], &mut self.y[run]);
+        segment.write_columns(x, y);
+        if !to_caller.is_identity() {
+            for (x, y) in x.iter_mut().zip(y) {
+                [*x, *y] = to_caller.place::<P>(*x, *y).xy();
+            }
+        }
+    }
+}
+
+/// Writes the sampling's points to `output` until either ends.
+pub(crate) fn fill<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
-    buffer: &mut [P],
+    clip: Clip,
+    mut output: O,
 ) -> Result<Filled, SamplingError> {
     let placement = sampling.placement();
-    let domain = placement.domain();
-    let to_caller = ToCaller::<P::Scalar>::new(&domain)?;
-    let mut traversal = AnyTraversal::new(sampling, Clip::domain(&domain));
+    let to_caller = ToCaller::new(&placement.domain())?;
+    let mut traversal = AnyTraversal::new(sampling, clip);
     let mut chunk = Chunk::new();
     let mut written = 0;
-    while let Some(leaf) = traversal.next_leaf(sampling)? {
-        let rest = &mut buffer[written..];
-        if let AnyLeaf::Fixed(leaf) = leaf
-            && leaf.inside
-            && leaf.all_accepted
-            && leaf.candidates <= rest.len()
+    while let Some(batch) = traversal.next_batch(sampling)? {
+        if let AnyBatch::Fixed(batch) = batch
+            && batch.inside
+            && batch.all_accepted
+            && batch.end - batch.start <= output.room() - written
         {
-            leaf.write_positions(placement, rest);
-            to_caller.place_all(&mut rest[..leaf.candidates]);
-            written += leaf.candidates;
+            let mut next = batch.start;
+            while next < batch.end {
+                let (segment, end) = batch.segment(placement, next, usize::MAX);
+                output.write(written, &segment, &to_caller);
+                written += end - next;
+                next = end;
+            }
             continue;
         }
-        let mut candidate = 0;
-        while candidate < leaf.candidates() {
-            candidate = leaf.fill_accepted(sampling, candidate, &mut chunk)?;
-            let rest = &mut buffer[written..];
-            let fitting = chunk.len.min(rest.len());
-            for ((slot, x), y) in rest[..fitting].iter_mut().zip(&chunk.x).zip(&chunk.y) {
-                *slot = to_caller.place(*x, *y);
-            }
-            written += fitting;
-            if fitting < chunk.len {
+        let mut next = batch.entries().start;
+        while next < batch.entries().end {
+            next = batch.select::<I, O::Position>(sampling, &clip, &to_caller, next, &mut chunk)?;
+            if !append(&chunk, &mut output, &mut written, &to_caller) {
                 return Ok(Filled { written, complete: false });
             }
         }
     }
     Ok(Filled { written, complete: true })
+}
+
+/// Appends the chunk's points; `false` if there was no room for all of them.
+#[inline(always)]
+fn append<S: Scalar, O: Output<Position: Position<Scalar = S>>>(
+    chunk: &Chunk<S>,
+    output: &mut O,
+    written: &mut usize,
+    to_caller: &ToCaller<S>,
+) -> bool {
+    let kept = chunk.keep[..chunk.len].iter().zip(&chunk.x).zip(&chunk.y);
+    let mut at = *written;
+    if output.room() - at >= chunk.len {
+        // A rejected candidate is overwritten by the next one: no branch depends on the data.
+        for ((keep, x), y) in kept {
+            output.set(at, to_caller.place(*x, *y));
+            at += usize::from(*keep);
+        }
+        *written = at;
+        return true;
+    }
+    for ((_, x), y) in kept.filter(|((keep, _), _)| **keep == 1) {
+        if at == output.room() {
+            *written = at;
+            return false;
+        }
+        output.set(at, to_caller.place(*x, *y));
+        at += 1;
+    }
+    *written = at;
+    true
 }

@@ -73,19 +73,36 @@ impl<'t, S: Scalar> Segment<'t, S> {
         Self { frame, centre, offsets }
     }
 
-    /// Hands each position, relative to the domain's least corner, to `put(i, x, y)`. A plain loop
-    /// over four arrays of one length, which compilers turn into vector instructions.
+    /// The number of candidates.
+    pub(crate) fn len(&self) -> usize {
+        self.offsets.u.len()
+    }
+
+    /// The positions, relative to the domain's least corner. A plain loop over four arrays of one
+    /// length, which compilers turn into vector instructions.
     #[inline(always)]
-    pub(crate) fn for_each(&self, mut put: impl FnMut(usize, S, S)) {
+    fn positions(&self) -> impl Iterator<Item = [S; 2]> {
         let Self { frame, centre, offsets: Offsets { u, v, p, q } } = *self;
-        let n = u.len();
-        let (v, p, q) = (&v[..n], &p[..n], &q[..n]);
         let field = |bytes: [u8; 2]| i32::from(i16::from_le_bytes(bytes));
-        for i in 0..n {
-            let offset =
-                ExactPoint { u: field(u[i]), v: field(v[i]), p: field(p[i]), q: field(q[i]) };
-            let [x, y] = frame.position(centre.plus(offset));
-            put(i, x, y);
+        u.iter().zip(v).zip(p).zip(q).map(move |(((u, v), p), q)| {
+            let offset = ExactPoint { u: field(*u), v: field(*v), p: field(*p), q: field(*q) };
+            frame.position(centre.plus(offset))
+        })
+    }
+
+    /// Writes the positions as points made by `place` from x and y.
+    #[inline(always)]
+    pub(crate) fn write_positions<P>(&self, slots: &mut [P], place: impl Fn(S, S) -> P) {
+        for (slot, [x, y]) in slots.iter_mut().zip(self.positions()) {
+            *slot = place(x, y);
+        }
+    }
+
+    /// Writes the positions, one array a coordinate.
+    #[inline(always)]
+    pub(crate) fn write_columns(&self, xs: &mut [S], ys: &mut [S]) {
+        for ((to_x, to_y), [x, y]) in xs.iter_mut().zip(ys).zip(self.positions()) {
+            (*to_x, *to_y) = (x, y);
         }
     }
 }

@@ -1,7 +1,10 @@
 //! Kinship: what a relaxed point must know of its ancestors.
 
-use super::node::Node;
+use super::frame::Frame;
+use super::node::{ExactPoint, Node};
+use super::scalar::Scalar;
 use crate::bake::class::{Classes, class_count};
+use crate::placement::Placement;
 use crate::tables::Tables;
 use crate::tiling::{FCode, TileType};
 
@@ -17,9 +20,13 @@ pub(crate) struct Kin {
     birth: Birth,
 }
 
-/// A tile with its classes, at the level at which its centre was born.
+/// A tile at the level at which its centre was born, but not before the frontier.
 #[derive(Clone, Copy, Debug)]
 struct Birth {
+    level: u8,
+    /// Its centre in edges of that level. A point is always computed from here, so that its bits do
+    /// not depend on the level at which it is met.
+    centre: ExactPoint,
     kind: TileType,
     /// Its rotation, its parent's and its grandparent's.
     rotations: [u8; 3],
@@ -50,7 +57,8 @@ impl Kin {
             }
         }
         let rotations = [node.rotation, ancestors[0], ancestors[1]];
-        Self { node: *node, classes, ancestors, birth: Birth { kind, rotations, classes } }
+        let birth = Birth { level: node.level, centre: node.centre, kind, rotations, classes };
+        Self { node: *node, classes, ancestors, birth }
     }
 
     /// As [`Node::child`].
@@ -68,9 +76,21 @@ impl Kin {
             self.birth
         } else {
             let rotations = [node.rotation, ancestors[0], ancestors[1]];
-            Birth { kind: node.kind, rotations, classes }
+            let (level, centre) = (node.level, node.centre);
+            Birth { level, centre, kind: node.kind, rotations, classes }
         };
         Some(Self { node, classes, ancestors, birth })
+    }
+
+    /// The level at which the node's centre was born, but not before the frontier.
+    pub(crate) fn born(&self) -> u8 {
+        self.birth.level
+    }
+
+    /// The node's own centre, relative to the domain's least corner.
+    pub(crate) fn own_centre<S: Scalar>(&self, placement: &Placement<'_>) -> [S; 2] {
+        let half_edge = placement.half_edge(self.birth.level);
+        Frame::new(half_edge, placement.origin(), 0).position(self.birth.centre)
     }
 
     /// The relation at `level` of the node's own centre, born at or above that level.
@@ -80,7 +100,7 @@ impl Kin {
         level: u8,
     ) -> Relation<impl Fn(u32) -> u32> {
         let birth = self.birth;
-        let zeros = level.saturating_sub(self.node.born);
+        let zeros = level.saturating_sub(birth.level);
         let rotation = if zeros < 2 {
             birth.rotations[usize::from(2 - zeros)]
         } else {

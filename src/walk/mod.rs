@@ -1,10 +1,12 @@
 //! The walk down the hierarchy of tiles: from the few that touch the domain to blocks of points.
 
+pub(crate) mod batch;
 pub(crate) mod chunk;
+pub(crate) mod either;
+pub(crate) mod expand;
 pub(crate) mod fill;
 pub(crate) mod frame;
 pub(crate) mod kin;
-pub(crate) mod leaf;
 pub(crate) mod node;
 pub(crate) mod relaxed;
 pub(crate) mod scalar;

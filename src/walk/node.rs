@@ -19,12 +19,14 @@ pub(crate) struct ExactPoint {
 
 impl ExactPoint {
     /// The same point in edges one level finer: times λ = 2 + √3.
+    #[inline]
     pub(crate) fn finer(self) -> Self {
         let Self { u, v, p, q } = self;
         Self { u: 2 * u + 3 * v, v: u + 2 * v, p: 2 * p + 3 * q, q: p + 2 * q }
     }
 
     /// Turned by −90°·`quarters`.
+    #[inline]
     pub(crate) fn turned_back(self, quarters: u8) -> Self {
         let Self { u, v, p, q } = self;
         match quarters % 4 {
@@ -61,32 +63,21 @@ pub(crate) struct Node {
     pub(crate) rotation: u8,
     /// Levels below the root.
     pub(crate) level: u8,
-    /// The level at which the tile's centre first was a tile centre, but not before the frontier.
-    pub(crate) born: u8,
     /// The centre in edges of `level`.
     pub(crate) centre: ExactPoint,
-    /// The centre in edges of `born`. A point is always computed from here, so that its bits do not
-    /// depend on the level at which it is met.
-    pub(crate) centre_at_birth: ExactPoint,
     pub(crate) rank: u64,
 }
 
 impl Node {
     /// The root `a`, unrotated at the origin.
-    pub(crate) fn root() -> Self {
-        Self {
-            kind: TileType::A,
-            rotation: 0,
-            level: 0,
-            born: 0,
-            centre: ExactPoint::default(),
-            centre_at_birth: ExactPoint::default(),
-            rank: 0,
-        }
+    pub(crate) const fn root() -> Self {
+        let centre = ExactPoint { u: 0, v: 0, p: 0, q: 0 };
+        Self { kind: TileType::A, rotation: 0, level: 0, centre, rank: 0 }
     }
 
     /// The child with this digit, or `None` if there is none. `tiles` and `tiles_before` are N_m and
     /// N_{m−1} of this node's level.
+    #[inline]
     pub(crate) fn child(
         &self,
         tables: &Tables<'_>,
@@ -95,17 +86,20 @@ impl Node {
         tiles_before: u64,
     ) -> Option<Self> {
         let (kind, turn) = *tables.child_kinds(self.kind).get(digit)?;
-        let (level, rotation) = (self.level + 1, (self.rotation + turn) % 12);
-        if digit == 0 {
-            // The centre child is the same point with the same rank.
-            return Some(Self { kind, rotation, level, centre: self.centre.finer(), ..*self });
-        }
-        let offset = tables.block(self.kind).offset(usize::from(self.rotation % 3), digit);
+        let turned = self.rotation + turn;
+        let rotation = if turned < 12 { turned } else { turned - 12 };
+        let block = tables.block(self.kind);
+        // Entry 0 of a block is its own centre, with offset 0 and the tile's own rank.
+        let offset = block.offset(usize::from(self.rotation % 3), digit);
         // Three quarter turns back are one forward, and so on.
         let offset = offset.turned_back(4 - self.rotation / 3);
-        let centre = self.centre.finer().plus(offset);
-        let (a, b) = tables.block(self.kind).rank_coefficients(digit);
-        let rank = self.rank + u64::from(a) * tiles - u64::from(b) * tiles_before;
-        Some(Self { kind, rotation, level, born: level, centre, centre_at_birth: centre, rank })
+        let (a, b) = block.rank_coefficients(digit);
+        Some(Self {
+            kind,
+            rotation,
+            level: self.level + 1,
+            centre: self.centre.finer().plus(offset),
+            rank: self.rank + u64::from(a) * tiles - u64::from(b) * tiles_before,
+        })
     }
 }

@@ -9,14 +9,14 @@
 
 use glam::DVec2;
 
+use super::batch::{Batch, count_below, levels_below, tile_counts};
 use super::chunk::{CHUNK, Chunk};
 use super::kin::{Kin, Relation};
-use super::leaf::{Leaf, count_below, levels_below, tile_counts};
-use super::scalar::Scalar;
-use crate::clip::Clip;
+use super::scalar::{Position, Scalar};
+use crate::clip::{Clip, ToCaller};
 use crate::domain::Region;
 use crate::importance::{Around, Importance};
-use crate::placement::{FRONTIER_LEVEL, REACH};
+use crate::placement::{FRONTIER_LEVEL, Placement};
 use crate::relaxed::RelaxationTable;
 use crate::sampling::{Sampling, SamplingError};
 use crate::tiling::cyclotomic::SQRT_3;
@@ -41,10 +41,10 @@ pub(crate) struct RelaxedTraversal {
     tiles_left: u64,
 }
 
-/// A leaf of the relaxed walk.
+/// A batch of the relaxed walk: a node's own centre is entry 0 of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RelaxedLeaf {
-    pub(crate) leaf: Leaf,
+pub(crate) struct RelaxedBatch {
+    pub(crate) batch: Batch,
     kin: Kin,
 }
 
@@ -80,11 +80,11 @@ impl RelaxedTraversal {
     }
 
     /// The next block with candidates, or `None` at the end.
-    pub(crate) fn next_leaf<I: Importance>(
+    pub(crate) fn next_batch<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
         relaxation: &RelaxationTable<'_>,
-    ) -> Result<Option<RelaxedLeaf>, SamplingError> {
+    ) -> Result<Option<RelaxedBatch>, SamplingError> {
         let placement = sampling.placement();
         let domain = placement.domain();
         let tables = placement.tables();
@@ -94,15 +94,15 @@ impl RelaxedTraversal {
                 .checked_sub(1)
                 .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
             let node = kin.node;
-            let region = placement.region(&node);
+            let centre = domain.min() + placement.centre(&node);
+            let region = Region { centre, radius: placement.reach(node.level, usize::MAX) };
             // How far points born in the subtree move, and the node's own centre.
             let step = |level: u8| {
                 let level = level.max(FIRST_RELAXED_LEVEL).min(MAX_LEVEL as u8);
                 2.0 * placement.half_edge(level).length() * relaxation.longest()
             };
-            let edge = 2.0 * placement.half_edge(node.level).length();
             let wide = Region { radius: region.radius + step(node.level + 1), ..region };
-            let own = Region { radius: region.radius - REACH * edge + step(node.born), ..region };
+            let own = Region { radius: placement.slack() + step(kin.born()), ..region };
             let subtree_reaches = self.clip.touches(&wide);
             if !subtree_reaches && !self.clip.touches(&own) {
                 continue;
@@ -118,19 +118,17 @@ impl RelaxedTraversal {
             }
             let (level, _) = level_of(sampling.scale().threshold(bound));
             let block = tables.block(node.kind);
-            let leaf = |candidates, inside| RelaxedLeaf {
-                leaf: Leaf { node, candidates, inside, all_accepted: false, bound },
+            let batch = |end, inside| RelaxedBatch {
+                batch: Batch { node, start: 0, end, inside, all_accepted: false, bound },
                 kin,
             };
             if !subtree_reaches {
-                return Ok(Some(leaf(1, false)));
+                return Ok(Some(batch(1, false)));
             }
-            if level <= node.level + 2
-                && let Some(levels) = levels_below(&node, tables, limit)
-            {
-                let candidates = count_below(&node, block, levels, limit);
+            let levels = levels_below(&node, limit);
+            if level <= node.level + 2 && levels <= usize::from(tables.depth()) {
                 let inside = self.clip.holds(&wide) && self.clip.holds(&own);
-                return Ok(Some(leaf(candidates, inside)));
+                return Ok(Some(batch(count_below(&node, block, levels, limit), inside)));
             }
             let (tiles, before) = tile_counts(node.level);
             for digit in (0..tables.child_kinds(node.kind).len()).rev() {
@@ -143,43 +141,67 @@ impl RelaxedTraversal {
     }
 }
 
-impl RelaxedLeaf {
-    /// Fills `chunk` with the accepted points among the candidates from `start` on, where they are
-    /// moved to, as many as fit. Returns the next candidate.
-    pub(crate) fn fill_chunk<S: Scalar, I: Importance>(
+impl RelaxedBatch {
+    /// Fills `chunk` with the points among the entries from `start` on, where they are moved to, as
+    /// many as fit. Returns the next entry.
+    pub(crate) fn select<I: Importance, P: Position>(
         &self,
         sampling: &Sampling<'_, I>,
         relaxation: &RelaxationTable<'_>,
+        clip: &Clip,
+        to_caller: &ToCaller<P::Scalar>,
         start: usize,
-        chunk: &mut Chunk<S>,
+        chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
         let placement = sampling.placement();
         let domain = placement.domain();
-        let [width, height] = domain.size().to_array().map(S::from_f64);
         // Where a border point that moves in finds its importance.
         let (low, high) = (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)));
-        let next = self.leaf.fill_chunk(placement, start, chunk);
+        let next = self.fill_chunk(placement, start, chunk);
         let mut kept = 0;
-        for k in 0..chunk.len.min(CHUNK) {
-            let (x, y, rank) = (chunk.x[k], chunk.y[k], chunk.ranks[k]);
+        for k in 0..chunk.len {
+            let (x, y, entry) = (chunk.x[k], chunk.y[k], start + k);
             let at = (domain.min() + DVec2::new(x.to_f64(), y.to_f64())).clamp(low, high);
             let value = sampling.importance().value(at);
-            if !(value >= 0.0 && value <= self.leaf.bound) {
-                return Err(SamplingError::InvalidValue { at, value, bound: self.leaf.bound });
+            if !(value >= 0.0 && value <= self.batch.bound) {
+                return Err(SamplingError::InvalidValue { at, value, bound: self.batch.bound });
             }
+            let rank = self.batch.rank(self.batch.block(placement), entry);
             if !sampling.scale().accepts(rank, value) {
                 continue;
             }
-            let [dx, dy] = self.step::<S, I>(sampling, relaxation, start + k, at, value);
-            let (x, y) = (x + dx, y + dy);
-            let zero = S::default();
-            if zero <= x && x < width && zero <= y && y < height {
-                (chunk.x[kept], chunk.y[kept], chunk.ranks[kept]) = (x, y, rank);
-                kept += 1;
-            }
+            let [dx, dy] = self.step::<P::Scalar, I>(sampling, relaxation, entry, at, value);
+            (chunk.x[kept], chunk.y[kept], chunk.entry[kept]) = (x + dx, y + dy, entry as u16);
+            chunk.keep[kept] = 1;
+            kept += 1;
         }
         chunk.len = kept;
+        if !self.batch.inside {
+            chunk.mark_inside::<P>(sampling, clip, to_caller);
+        }
         Ok(next)
+    }
+
+    /// The fixed centres of the entries from `start` on, as many as fit. Returns the next entry.
+    fn fill_chunk<S: Scalar>(
+        &self,
+        placement: &Placement<'_>,
+        start: usize,
+        chunk: &mut Chunk<S>,
+    ) -> usize {
+        chunk.len = 0;
+        let mut next = start;
+        if start == 0 {
+            [chunk.x[0], chunk.y[0]] = self.kin.own_centre(placement);
+            (chunk.len, next) = (1, 1);
+        }
+        while chunk.len < CHUNK && next < self.batch.end {
+            let (segment, end) = self.batch.segment::<S>(placement, next, CHUNK - chunk.len);
+            let filled = chunk.len..chunk.len + (end - next);
+            segment.write_columns(&mut chunk.x[filled.clone()], &mut chunk.y[filled.clone()]);
+            (chunk.len, next) = (filled.end, end);
+        }
+        next
     }
 
     /// How far candidate `i`, accepted at `at` where the importance is `value`, is moved.
@@ -207,7 +229,7 @@ impl RelaxedLeaf {
             let Relation { class, rotation } = self.kin.of_own_centre(tables, level);
             (relaxation.vector(class, phase, detail), rotation)
         } else {
-            let coefficients = tables.block(self.leaf.node.kind).rank_coefficients(i);
+            let coefficients = tables.block(self.batch.node.kind).rank_coefficients(i);
             let Relation { class, rotation } = self.kin.of_entry(coefficients, level);
             (relaxation.vector(class, phase, detail), rotation)
         };

@@ -16,6 +16,8 @@ pub trait Scalar:
     fn from_i32(value: i32) -> Self;
     /// Exact.
     fn to_f64(self) -> f64;
+    /// The same slice, if this is `f32`.
+    fn as_singles(values: &[Self]) -> Option<&[f32]>;
     /// The next number up.
     fn next_up(self) -> Self;
     /// The next number down.
@@ -23,7 +25,7 @@ pub trait Scalar:
 }
 
 macro_rules! scalar {
-    ($float:ident) => {
+    ($float:ident, $singles:expr) => {
         impl Scalar for $float {
             const SQRT_3: Self = crate::tiling::cyclotomic::SQRT_3 as $float;
             #[inline(always)]
@@ -39,6 +41,10 @@ macro_rules! scalar {
             fn to_f64(self) -> f64 {
                 self.into()
             }
+            #[inline(always)]
+            fn as_singles(values: &[Self]) -> Option<&[f32]> {
+                $singles(values)
+            }
             fn next_up(self) -> Self {
                 self.next_up()
             }
@@ -49,8 +55,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32);
-scalar!(f64);
+scalar!(f32, Some);
+scalar!(f64, |_| None);
 
 /// A position type: glam's [`Vec2`] (`f32`) or [`DVec2`] (`f64`).
 pub trait Position: Copy + Default + sealed::Sealed {

@@ -1,0 +1,213 @@
+//! From coordinates to pixels, many at once.
+//!
+//! All of it is + − × and comparisons on arrays, which compilers turn into vector instructions; the
+//! results are those of the scalar lookup to the bit.
+
+use glam::DVec2;
+
+use super::Around;
+use crate::walk::scalar::Scalar;
+
+/// Lookups handled in one pass.
+const RUN: usize = 256;
+
+/// Where the pixels of an image lie in the caller's plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lattice {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// The least corner of pixel (0, 0).
+    pub(super) min: DVec2,
+    pub(super) texels_per_unit: DVec2,
+    /// `texels_per_unit`, if pixel coordinates of positions that are relative to corner 0 are the same
+    /// computed in `f32`: powers of two scale without rounding, and every index is exact below 2²².
+    single: Option<[f32; 2]>,
+}
+
+impl Lattice {
+    pub(super) fn new(width: usize, height: usize, min: DVec2, texels_per_unit: DVec2) -> Self {
+        let scale = [texels_per_unit.x, texels_per_unit.y];
+        // Positive normal numbers without mantissa bits, far from the ends of f32's range.
+        let is_power = |s: f64| s.to_bits() << 12 == 0 && (1e-30..1e30).contains(&s);
+        let small = width.checked_mul(height).is_some_and(|pixels| pixels < 1 << 22);
+        let single = small && min == DVec2::ZERO && scale.into_iter().all(is_power);
+        let single = single.then(|| scale.map(|s| s as f32));
+        Self { width, height, min, texels_per_unit, single }
+    }
+
+    /// Column and row of the pixel under a point; the nearest one beyond the image.
+    #[inline]
+    pub(super) fn texel(&self, at: DVec2) -> (usize, usize) {
+        let t = (at - self.min) * self.texels_per_unit;
+        // `as` takes negative numbers and NaN to 0.
+        ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
+    }
+
+    /// Between the centres of the four pixels around a point, the border's beyond the image.
+    pub(super) fn bilinear(&self, pixels: &[f32], at: DVec2) -> f64 {
+        let t = (at - self.min) * self.texels_per_unit - 0.5;
+        // `max` first: it takes NaN to 0.
+        let corner = t.max(DVec2::ZERO);
+        let (x0, y0) =
+            ((corner.x as usize).min(self.width - 1), (corner.y as usize).min(self.height - 1));
+        let (x1, y1) = ((x0 + 1).min(self.width - 1), (y0 + 1).min(self.height - 1));
+        // Past the last centre both neighbours are the same pixel, whatever the weight.
+        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
+        let pixel = |x: usize, y: usize| f64::from(pixels[y * self.width + x]);
+        let (a, b, c, d) = (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
+        let upper = a + (b - a) * weight.x;
+        let lower = c + (d - c) * weight.x;
+        // Rounding must not carry the value past its own bound.
+        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
+    }
+
+    /// Mean, least and most of the pixels that a square covers at least in part; beyond the image its
+    /// border counts. O(pixels covered).
+    pub(super) fn around(&self, pixels: &[f32], at: DVec2, half_side: f64) -> Around {
+        let t = (at - self.min) * self.texels_per_unit;
+        let half = half_side * self.texels_per_unit;
+        let axis = |low: f64, high: f64| {
+            let (first, last) = (libm::floor(low) as i64, libm::ceil(high) as i64);
+            (first..last.max(first + 1))
+                .map(move |i| (i, (high.min((i + 1) as f64) - low.max(i as f64)).max(0.0)))
+        };
+        let inside = |i: i64, count: usize| i.clamp(0, count as i64 - 1) as usize;
+        let (mut sum, mut area, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0f64);
+        for (y, height) in axis(t.y - half.y, t.y + half.y) {
+            let row = &pixels[inside(y, self.height) * self.width..][..self.width];
+            for (x, width) in axis(t.x - half.x, t.x + half.x) {
+                let value = f64::from(row[inside(x, self.width)]);
+                sum += value * (width * height);
+                area += width * height;
+                (least, most) = (least.min(value), most.max(value));
+            }
+        }
+        let mean = if area > 0.0 { sum / area } else { most };
+        Around { mean, least, most }
+    }
+
+    /// `values[i]` = the pixel under `origin` + (x[i], y[i]).
+    #[inline(always)]
+    pub(super) fn values<S: Scalar>(
+        &self,
+        pixels: &[f32],
+        origin: DVec2,
+        x: &[S],
+        y: &[S],
+        values: &mut [f64],
+    ) {
+        let mut indices = [0u32; RUN];
+        // Past 2³² pixels an index leaves `u32`.
+        if pixels.len() >= u32::MAX as usize {
+            for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
+                let (column, row) = self.texel(origin + DVec2::new(x.to_f64(), y.to_f64()));
+                *value = f64::from(pixels[row * self.width + column]);
+            }
+            return;
+        }
+        for ((values, x), y) in values.chunks_mut(RUN).zip(x.chunks(RUN)).zip(y.chunks(RUN)) {
+            let indices = &mut indices[..x.len()];
+            match (self.single, S::as_singles(x), S::as_singles(y)) {
+                (Some(scale), Some(x), Some(y)) if origin == DVec2::ZERO => {
+                    self.indices_single(scale, x, y, indices);
+                }
+                _ => self.indices_double(origin, x, y, indices),
+            }
+            for (value, index) in values.iter_mut().zip(indices) {
+                *value = f64::from(pixels[*index as usize]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn indices_double<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], indices: &mut [u32]) {
+        let Self { width, height, min, texels_per_unit: scale, .. } = *self;
+        let (last_x, last_y, width) = ((width - 1) as f64, (height - 1) as f64, width as f64);
+        for ((index, x), y) in indices.iter_mut().zip(x).zip(y) {
+            let column = floor_within((origin.x + x.to_f64() - min.x) * scale.x, last_x);
+            let row = floor_within((origin.y + y.to_f64() - min.y) * scale.y, last_y);
+            // Integers below 2³², exact.
+            *index = (row * width + column + INTEGERS).to_bits() as u32;
+        }
+    }
+
+    #[inline(always)]
+    fn indices_single(&self, scale: [f32; 2], x: &[f32], y: &[f32], indices: &mut [u32]) {
+        let (last_x, last_y) = ((self.width - 1) as f32, (self.height - 1) as f32);
+        let width = self.width as f32;
+        for ((index, x), y) in indices.iter_mut().zip(x).zip(y) {
+            let column = floor_within_single(x * scale[0], last_x);
+            let row = floor_within_single(y * scale[1], last_y);
+            // Integers below 2²², exact.
+            *index = (row * width + column + INTEGERS_SINGLE).to_bits() & 0x3f_ffff;
+        }
+    }
+}
+
+/// 2⁵²: from here to 2⁵³ the `f64` are the integers, so that adding it to a smaller number rounds that to
+/// an integer, which the lowest bits then hold.
+const INTEGERS: f64 = 4_503_599_627_370_496.0;
+
+/// The same for `f32`: 2²³.
+const INTEGERS_SINGLE: f32 = 8_388_608.0;
+
+/// ⌊t⌋ clamped to 0..=last, `last` an integer below 2³²; 0 for NaN.
+#[inline(always)]
+fn floor_within(t: f64, last: f64) -> f64 {
+    let t = if t > 0.0 { t } else { 0.0 };
+    let t = if t < last { t } else { last };
+    let nearest = t + INTEGERS - INTEGERS;
+    nearest - if nearest > t { 1.0 } else { 0.0 }
+}
+
+/// The same in single precision, `last` < 2²².
+#[inline(always)]
+fn floor_within_single(t: f32, last: f32) -> f32 {
+    let t = if t > 0.0 { t } else { 0.0 };
+    let t = if t < last { t } else { last };
+    let nearest = t + INTEGERS_SINGLE - INTEGERS_SINGLE;
+    nearest - if nearest > t { 1.0 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn many_lookups_are_the_single_one(
+            (width, height) in (1usize..70, 1usize..70),
+            min in prop_oneof![Just(DVec2::ZERO), Just(DVec2::new(-3.25, 7.7))],
+            scale in prop_oneof![
+                Just(DVec2::ONE), Just(DVec2::new(0.25, 64.0)), Just(DVec2::new(0.3, 17.0))
+            ],
+            origin in prop_oneof![Just(DVec2::ZERO), Just(DVec2::new(0.1, -5.0))],
+            points in prop::collection::vec((-9.0f64..90.0, -9.0f64..90.0), 0..600),
+        ) {
+            let lattice = Lattice::new(width, height, min, scale);
+            let pixels: Vec<f32> = (0..width * height).map(|i| i as f32).collect();
+            // Quarters are exact in both precisions and hit the borders between pixels.
+            let mut x: Vec<f64> = points.iter().map(|p| p.0).collect();
+            let mut y: Vec<f64> = points.iter().map(|p| p.1).collect();
+            x.extend([0.0, -0.0, 1.0, 2.0, 3.0, 0.25, 1e30, -1e30, f64::NAN, 1.0 - 1e-16, 2.5]);
+            y.extend([0.0, 1.0, -0.0, 3.0, f64::NAN, 8.0, 1e30, -1e30, 0.5, 2.5, 1.0 - 1e-16]);
+            let single = |v: &[f64]| v.iter().map(|v| *v as f32).collect::<Vec<_>>();
+            let (sx, sy) = (single(&x), single(&y));
+            let mut values = alloc::vec![0.0; x.len()];
+            let expected = |x: f64, y: f64| {
+                let (column, row) = lattice.texel(origin + DVec2::new(x, y));
+                (row * width + column) as f64
+            };
+            lattice.values(&pixels, origin, &x, &y, &mut values);
+            for i in 0..x.len() {
+                prop_assert_eq!(values[i], expected(x[i], y[i]));
+            }
+            lattice.values(&pixels, origin, &sx, &sy, &mut values);
+            for i in 0..x.len() {
+                prop_assert_eq!(values[i], expected(sx[i].into(), sy[i].into()));
+            }
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Opening a tile: which of its children need a visit, decided for all of them at once.
+
+use glam::DVec2;
+
+use super::batch::{tile_counts, tiles_at};
+use super::frame::{Frame, Segment};
+use super::node::{ExactPoint, Node};
+use crate::clip::Clip;
+use crate::domain::Region;
+use crate::importance::Importance;
+use crate::sampling::{Sampling, SamplingError};
+use crate::tiling::subdivide::MAX_CHILDREN;
+
+/// A tile whose children are being visited.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Open {
+    pub(crate) node: Node,
+    /// Bit `d`: the child with digit `d` is still to be visited.
+    pub(crate) pending: u16,
+    /// Bit `d`: the child's new descendants all lie in the clip.
+    pub(crate) inside: u16,
+    /// Bit `d`: the importance is its upper bound everywhere in the child.
+    pub(crate) constant: u16,
+    /// How many ranks the child's bound admits.
+    pub(crate) limits: [u64; MAX_CHILDREN],
+    /// The child's upper bound.
+    pub(crate) bounds: [f64; MAX_CHILDREN],
+}
+
+impl Open {
+    /// What an unused slot holds.
+    pub(crate) const CLOSED: Self = Self {
+        node: Node::root(),
+        pending: 0,
+        inside: 0,
+        constant: 0,
+        limits: [0; MAX_CHILDREN],
+        bounds: [0.0; MAX_CHILDREN],
+    };
+
+    /// Opens `node`, whose new descendants are born at most `levels` ≥ 1 levels below it.
+    ///
+    /// A child's own centre belongs to `node`'s batch. What is left below a level-(m + 1) child with
+    /// rank r has ranks from N_{m+1} + r on, and its points are born at most `levels` − 1 levels below
+    /// it, so near that a smaller disc than the child's whole subtree's holds them.
+    pub(crate) fn expand<I: Importance>(
+        &mut self,
+        sampling: &Sampling<'_, I>,
+        clip: &Clip,
+        node: &Node,
+        levels: usize,
+        node_inside: bool,
+    ) -> Result<(), SamplingError> {
+        (self.node, self.pending, self.inside, self.constant) = (*node, 0, 0, 0);
+        let placement = sampling.placement();
+        let importance = sampling.importance();
+        let block = placement.tables().block(node.kind);
+        let children = node.kind.child_count();
+        let (mut x, mut y) = ([0.0; MAX_CHILDREN], [0.0; MAX_CHILDREN]);
+        child_centres(sampling, node).write_columns(&mut x, &mut y);
+
+        let corner = placement.domain().min();
+        let radius = placement.reach(node.level + 1, levels - 1);
+        let (tiles, before) = tile_counts(node.level);
+        let tiles_below = tiles_at(node.level + 1);
+        for digit in 0..children {
+            let region = Region { centre: corner + DVec2::new(x[digit], y[digit]), radius };
+            if !(node_inside || clip.touches(&region)) {
+                continue;
+            }
+            let bound = importance.upper_bound(&region);
+            let limit = sampling.rank_limit_of_bound(bound, &region)?;
+            let (a, b) = block.rank_coefficients(digit);
+            let rank = node.rank + u64::from(a) * tiles - u64::from(b) * before;
+            let bit = 1 << digit;
+            if limit > tiles_below.saturating_add(rank) {
+                self.pending |= bit;
+                self.inside |= if node_inside || clip.holds(&region) { bit } else { 0 };
+                self.constant |= if importance.is_constant(&region) { bit } else { 0 };
+            }
+            (self.limits[digit], self.bounds[digit]) = (limit, bound);
+        }
+        Ok(())
+    }
+}
+
+/// The centres of a node's children, by digit, relative to the domain's least corner.
+fn child_centres<'t, I: Importance>(sampling: &Sampling<'t, I>, node: &Node) -> Segment<'t, f64> {
+    let placement = sampling.placement();
+    let quarters = node.rotation / 3;
+    let centre: ExactPoint = node.centre.finer();
+    Segment::new(
+        Frame::new(placement.half_edge(node.level + 1), placement.origin(), quarters),
+        centre.turned_back(quarters),
+        placement.tables().block(node.kind).offsets(usize::from(node.rotation % 3)),
+        0..node.kind.child_count(),
+    )
+}
