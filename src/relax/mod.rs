@@ -9,6 +9,7 @@
 pub mod field;
 pub mod force;
 pub mod ground;
+pub mod image;
 pub mod motif;
 pub mod patch;
 pub mod random;
@@ -19,5 +20,6 @@ pub mod table;
 pub mod train;
 
 pub use field::Field;
+pub use schedule::Recipe;
 pub use ground::{Ground, Region};
 pub use site::Site;

@@ -7,6 +7,7 @@ mod failure;
 mod output;
 mod picture;
 mod progress;
+mod relax;
 mod stipple;
 mod tables;
 
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
+        Command::Relax(options) => relax::run(options),
         Command::Tables => tables::run(),
     }
 }
