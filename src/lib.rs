@@ -71,7 +71,7 @@ mod walk;
 
 pub use domain::{Domain, DomainError, Region};
 pub use importance::{
-    Around, Constant, Function, ImageMap, Importance, Interpolation, InvalidPixels, MapError,
+    Constant, Function, ImageMap, Importance, Interpolation, InvalidPixels, MapError, StippleMap,
 };
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};

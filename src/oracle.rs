@@ -57,7 +57,8 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
             let moved = match sampling.relaxation() {
                 Some(table) => {
                     let table = table.to_relaxation(*rules.digits()).unwrap();
-                    fixed + step(sampling, &table, at, value, &path)
+                    let moved = fixed + step(sampling, &table, at, value, &path);
+                    sampling.importance().settle(at, moved, sampling.scale().importance_of(rank))
                 }
                 None => fixed,
             };
@@ -118,12 +119,9 @@ fn step<I: Importance>(
     if level < FIRST_RELAXED_LEVEL.into() {
         return DVec2::ZERO;
     }
-    let spacing = libm::sqrt(sampling.placement().ranks_per_density() / threshold);
-    let around = sampling.importance().around(at, spacing);
-    let tau = (sampling.scale().threshold(around.mean) / counts[level - 1] as f64)
-        .clamp(1.0, 7.0 + 4.0 * SQRT_3);
-    let contrast = libm::log(around.most / around.least.max(1e-300));
-    let detail = ((contrast - 0.07) / 0.53).clamp(0.0, 1.0);
+    let local = sampling.scale().threshold(sampling.importance().local(at));
+    let tau = (local / counts[level - 1] as f64).clamp(1.0, 7.0 + 4.0 * SQRT_3);
+    let detail = sampling.importance().detail(at);
     let [x, y] = table.vector(&path[level].0, tau, detail);
     let edge = sampling.placement().turned_edge(level as u8, path[level - 2].1);
     DVec2::new(edge.x * x + -edge.y * y, edge.y * x + edge.x * y)
@@ -277,6 +275,12 @@ mod tests {
                 let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
                 let sampling = sampling.relaxed().unwrap();
                 prop_assert_eq!(sampled(&sampling), points(&sampling));
+                let pixels = map.pixels().to_vec();
+                let stipple =
+                    StippleMap::new(width, height, pixels, InvalidPixels::Reject, count).unwrap();
+                let stippled = Sampling::new(&placement, &stipple, Amount::Points(count)).unwrap();
+                let stippled = stippled.relaxed().unwrap();
+                prop_assert_eq!(sampled(&stippled), points(&stippled));
                 let uniform = Sampling::new(&placement, &Constant::ONE, Amount::Points(count));
                 let uniform = uniform.unwrap().relaxed().unwrap();
                 prop_assert_eq!(sampled(&uniform), points(&uniform));

@@ -339,6 +339,11 @@ pub(crate) struct RankScale {
 }
 
 impl RankScale {
+    /// The importance that a rank needs.
+    pub(crate) fn importance_of(self, rank: u64) -> f64 {
+        rank as f64 / self.magnification
+    }
+
     /// T, in rank units.
     pub(crate) fn threshold(self, value: f64) -> f64 {
         value * self.magnification

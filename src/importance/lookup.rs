@@ -5,7 +5,8 @@
 
 use glam::DVec2;
 
-use super::Around;
+use super::pyramid::MaxPyramid;
+use crate::domain::Region;
 use crate::walk::scalar::Scalar;
 
 /// Lookups handled in one pass.
@@ -44,7 +45,7 @@ impl Lattice {
     }
 
     /// Between the centres of the four pixels around a point, the border's beyond the image.
-    pub(super) fn bilinear(&self, pixels: &[f32], at: DVec2) -> f64 {
+    pub(super) fn bilinear<T: Copy + Into<f64>>(&self, pixels: &[T], at: DVec2) -> f64 {
         let t = (at - self.min) * self.texels_per_unit - 0.5;
         // `max` first: it takes NaN to 0.
         let corner = t.max(DVec2::ZERO);
@@ -53,37 +54,28 @@ impl Lattice {
         let (x1, y1) = ((x0 + 1).min(self.width - 1), (y0 + 1).min(self.height - 1));
         // Past the last centre both neighbours are the same pixel, whatever the weight.
         let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
-        let pixel = |x: usize, y: usize| f64::from(pixels[y * self.width + x]);
-        let (a, b, c, d) = (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
+        let pixel = |x: usize, y: usize| pixels[y * self.width + x].into();
+        let (a, b, c, d): (f64, f64, f64, f64) =
+            (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
         let upper = a + (b - a) * weight.x;
         let lower = c + (d - c) * weight.x;
         // Rounding must not carry the value past its own bound.
         (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
     }
 
-    /// Mean, least and most of the pixels that a square covers at least in part; beyond the image its
-    /// border counts. O(pixels covered).
-    pub(super) fn around(&self, pixels: &[f32], at: DVec2, half_side: f64) -> Around {
-        let t = (at - self.min) * self.texels_per_unit;
-        let half = half_side * self.texels_per_unit;
-        let axis = |low: f64, high: f64| {
-            let (first, last) = (libm::floor(low) as i64, libm::ceil(high) as i64);
-            (first..last.max(first + 1))
-                .map(move |i| (i, (high.min((i + 1) as f64) - low.max(i as f64)).max(0.0)))
-        };
-        let inside = |i: i64, count: usize| i.clamp(0, count as i64 - 1) as usize;
-        let (mut sum, mut area, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0f64);
-        for (y, height) in axis(t.y - half.y, t.y + half.y) {
-            let row = &pixels[inside(y, self.height) * self.width..][..self.width];
-            for (x, width) in axis(t.x - half.x, t.x + half.x) {
-                let value = f64::from(row[inside(x, self.width)]);
-                sum += value * (width * height);
-                area += width * height;
-                (least, most) = (least.min(value), most.max(value));
-            }
-        }
-        let mean = if area > 0.0 { sum / area } else { most };
-        Around { mean, least, most }
+    /// An upper bound of [`bilinear`](Self::bilinear) in a region: those values depend on the pixels
+    /// whose centres lie less than one pixel away.
+    pub(super) fn bilinear_bound(
+        &self,
+        pyramid: &MaxPyramid,
+        pixels: &[f32],
+        region: &Region,
+    ) -> f64 {
+        // A little more than half a pixel from the square's border outruns rounding.
+        let margin = region.radius + 0.500_001 / self.texels_per_unit;
+        let (x0, y0) = self.texel(region.centre - margin);
+        let (x1, y1) = self.texel(region.centre + margin);
+        f64::from(pyramid.max(pixels, self.width, [x0, x1], [y0, y1]))
     }
 
     /// `values[i]` = the pixel under `origin` + (x[i], y[i]).

@@ -5,9 +5,9 @@ use core::fmt;
 
 use glam::DVec2;
 
+use super::Importance;
 use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
-use super::{Around, Importance};
 use crate::domain::{Domain, Region};
 use crate::walk::scalar::Scalar;
 
@@ -113,21 +113,7 @@ impl ImageMap {
         mut pixels: Vec<f32>,
         invalid: InvalidPixels,
     ) -> Result<Self, MapError> {
-        if width == 0 || height == 0 {
-            return Err(MapError::Empty { width, height });
-        }
-        let expected = width.saturating_mul(height);
-        if pixels.len() != expected {
-            return Err(MapError::Length { expected, found: pixels.len() });
-        }
-        let size = DVec2::new(width as f64, height as f64);
-        let mut sum = 0.0;
-        for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
-            sum +=
-                admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
-        }
-        let domain =
-            Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
+        let (domain, sum) = admit_all(width, height, &mut pixels, invalid)?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
         let interpolation = Interpolation::Nearest;
@@ -175,6 +161,30 @@ impl ImageMap {
     }
 }
 
+/// Checks the shape, applies the policy to all pixels, and gives the rectangle [0, width) × [0, height)
+/// and their sum, in row order.
+pub(super) fn admit_all(
+    width: usize,
+    height: usize,
+    pixels: &mut [f32],
+    invalid: InvalidPixels,
+) -> Result<(Domain, f64), MapError> {
+    if width == 0 || height == 0 {
+        return Err(MapError::Empty { width, height });
+    }
+    let expected = width.saturating_mul(height);
+    if pixels.len() != expected {
+        return Err(MapError::Length { expected, found: pixels.len() });
+    }
+    let mut sum = 0.0;
+    for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
+        sum += admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
+    }
+    let size = DVec2::new(width as f64, height as f64);
+    let domain = Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
+    Ok((domain, sum))
+}
+
 /// Applies the policy to a row and sums it; the first column that it does not admit otherwise.
 fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
     let mut sum = 0.0;
@@ -205,14 +215,11 @@ impl Importance for ImageMap {
 
     #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        let (mut low, mut high) = (region.centre - region.radius, region.centre + region.radius);
         if self.interpolation == Interpolation::Bilinear {
-            // Values depend on the pixels whose centres lie less than one pixel away; a little more
-            // than half a pixel from the square's border outruns rounding.
-            let margin = 0.500_001 / self.lattice.texels_per_unit;
-            (low, high) = (low - margin, high + margin);
+            return self.lattice.bilinear_bound(&self.pyramid, &self.pixels, region);
         }
-        let ((x0, y0), (x1, y1)) = (self.lattice.texel(low), self.lattice.texel(high));
+        let (x0, y0) = self.lattice.texel(region.centre - region.radius);
+        let (x1, y1) = self.lattice.texel(region.centre + region.radius);
         f64::from(self.pyramid.max(&self.pixels, self.lattice.width, [x0, x1], [y0, y1]))
     }
 
@@ -226,10 +233,6 @@ impl Importance for ImageMap {
                 }
             }
         }
-    }
-
-    fn around(&self, at: DVec2, half_side: f64) -> Around {
-        self.lattice.around(&self.pixels, at, half_side)
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {

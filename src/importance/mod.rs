@@ -9,10 +9,12 @@ mod function;
 mod lookup;
 mod map;
 mod pyramid;
+mod stipple;
 
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, Interpolation, InvalidPixels, MapError};
+pub use stipple::StippleMap;
 
 use glam::DVec2;
 
@@ -50,13 +52,32 @@ pub trait Importance {
         None
     }
 
-    /// What lies in the square of half-side `half_side` about a point, in the caller's units: relaxed
-    /// points read how even the density is there. Importance that does not override this is taken to
-    /// be even.
-    fn around(&self, at: DVec2, half_side: f64) -> Around {
-        let _ = half_side;
-        let value = self.value(at);
-        Around { mean: value, least: value, most: value }
+    /// Relaxed points only: the importance that the density phase is read from, `value` averaged at
+    /// the scale of the points' spacing. The same as `value` if that is smooth.
+    fn local(&self, at: DVec2) -> f64 {
+        self.value(at)
+    }
+
+    /// Relaxed points only: how much the importance varies at the scale of the spacing, from 0, smooth,
+    /// to 1.
+    fn detail(&self, at: DVec2) -> f64 {
+        let _ = at;
+        0.0
+    }
+
+    /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
+    /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
+    /// their side. Not farther from `moved` than [`longest_settling`](Self::longest_settling), unless
+    /// nearer to `centre`.
+    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        let _ = (centre, needed);
+        moved
+    }
+
+    /// The farthest that [`settle`](Self::settle) takes a point away from where relaxation moved it, in
+    /// units.
+    fn longest_settling(&self) -> f64 {
+        0.0
     }
 
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
@@ -65,17 +86,6 @@ pub trait Importance {
         let _ = region;
         false
     }
-}
-
-/// The importance in a square about a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Around {
-    /// Its mean.
-    pub mean: f64,
-    /// A value that it hardly falls below.
-    pub least: f64,
-    /// A value that it hardly exceeds.
-    pub most: f64,
 }
 
 impl<I: Importance + ?Sized> Importance for &I {
@@ -91,8 +101,20 @@ impl<I: Importance + ?Sized> Importance for &I {
         (**self).integral(domain)
     }
 
-    fn around(&self, at: DVec2, half_side: f64) -> Around {
-        (**self).around(at, half_side)
+    fn local(&self, at: DVec2) -> f64 {
+        (**self).local(at)
+    }
+
+    fn detail(&self, at: DVec2) -> f64 {
+        (**self).detail(at)
+    }
+
+    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        (**self).settle(centre, moved, needed)
+    }
+
+    fn longest_settling(&self) -> f64 {
+        (**self).longest_settling()
     }
 
     fn is_constant(&self, region: &Region) -> bool {

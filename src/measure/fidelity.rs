@@ -186,6 +186,19 @@ pub fn local_distances(
         .collect()
 }
 
+/// The share of the points in the image that lie on pixels of importance 0: the wrong side of edges.
+/// 0 if no point lies in the image.
+#[must_use]
+pub fn share_on_zero(points: &[DVec2], image: &Importance<'_>) -> f64 {
+    let window = image.window();
+    let (mut inside, mut wrong) = (0u64, 0u64);
+    for p in points.iter().filter(|p| window.contains(**p)) {
+        inside += 1;
+        wrong += u64::from(image.at(*p) <= 0.0);
+    }
+    wrong as f64 / inside.max(1) as f64
+}
+
 /// Measures points against the image: variance in blocks of 64 and local nearest distances. Points
 /// outside the image serve as neighbours only. `None` as for [`block_variance`].
 #[must_use]

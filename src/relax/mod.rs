@@ -9,6 +9,7 @@
 pub mod field;
 pub mod force;
 pub mod ground;
+pub mod image;
 pub mod motif;
 pub mod patch;
 pub mod random;
@@ -20,4 +21,5 @@ pub mod train;
 
 pub use field::Field;
 pub use ground::{Ground, Region};
+pub use schedule::Recipe;
 pub use site::Site;

@@ -1,9 +1,11 @@
 //! The figures of a table, on places that training never saw.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
-use super::field::{Constant, Field, Image, spacing, threshold_of_phase};
+use super::field::{Constant, Field, spacing, threshold_of_phase};
 use super::ground::{Ground, Region};
+use super::image::{Image, ImageRules};
 use super::random::Random;
 use super::site::sites;
 use crate::bake::relaxation::{DELTA, Relaxation};
@@ -74,15 +76,9 @@ pub fn image_points(
     let ground = Ground::random(rules, half.length(), random)?;
     Ok(sites(&ground, image, Region::Rectangle(half))?
         .iter()
-        .map(|site| table.map_or(site.centre, |table| site.relaxed(table)))
+        .map(|site| table.map_or(site.centre, |table| site.settled(table, image)))
         .map(|p| image.pixels(p))
         .collect())
-}
-
-/// Measures a table on an image.
-#[must_use]
-pub fn image_fidelity(points: &[DVec2], values: &[f32], width: usize) -> Option<Fidelity> {
-    fidelity::fidelity(points, &Importance { values, width })
 }
 
 /// The side of [`test_image`].
@@ -111,4 +107,85 @@ pub fn test_image() -> Vec<f32> {
             }
         })
         .collect()
+}
+
+/// The figures of uniform densities: phases spread over a whole level, several places each.
+///
+/// # Errors
+/// As [`uniform_window`].
+pub fn uniform_sweep(
+    rules: &Rules,
+    table: Option<&Relaxation>,
+    phases: usize,
+    places: u64,
+    seed: u64,
+) -> Result<Vec<(f64, Vec<Evenness>)>, OutOfRange> {
+    (0..phases)
+        .into_par_iter()
+        .map(|k| {
+            let tau = phase(k, phases);
+            let measured = (0..places)
+                .map(|place| {
+                    let mut random = Random::new(seed, &[k as u64, place]);
+                    uniform(rules, table, tau, WINDOW_POINTS, &mut random)
+                })
+                .collect::<Result<Vec<_>, _>>()?;
+            Ok((tau, measured.into_iter().flatten().collect()))
+        })
+        .collect()
+}
+
+/// Points of a window of [`uniform_sweep`].
+pub const WINDOW_POINTS: f64 = 16384.0;
+
+/// The worst of several measurements in each figure.
+#[must_use]
+pub fn worst<'a>(measured: impl IntoIterator<Item = &'a Evenness>) -> Option<Evenness> {
+    measured.into_iter().copied().reduce(|a, b| Evenness {
+        count: a.count.min(b.count),
+        low_frequency: a.low_frequency.max(b.low_frequency),
+        mean_distance: a.mean_distance.min(b.mean_distance),
+        least_distance: a.least_distance.min(b.least_distance),
+    })
+}
+
+/// The figures of an image of `count` points at phases spread over a whole level; each with the share of
+/// dots on pixels of importance 0.
+///
+/// # Errors
+/// As [`image_points`].
+pub fn image_sweep(
+    rules: &Rules,
+    table: Option<&Relaxation>,
+    values: &[f32],
+    width: usize,
+    count: f64,
+    phases: usize,
+    seed: u64,
+) -> Result<Vec<(Fidelity, f64)>, OutOfRange> {
+    let image_rules = match table {
+        Some(_) => ImageRules::default(),
+        // Fixed centres are accepted by the bilinear importance at them.
+        None => ImageRules { accept_radius: 0.0, ..ImageRules::default() },
+    };
+    let measured = (0..phases).into_par_iter().map(|k| {
+        let tau = phase(k, phases);
+        let Some(image) = Image::new(values.to_vec(), width, count, tau, image_rules) else {
+            return Ok(None);
+        };
+        let mut random = Random::new(seed, &[k as u64]);
+        let points = image_points(rules, table, &image, &mut random)?;
+        let image = Importance { values, width };
+        Ok(fidelity::fidelity(&points, &image)
+            .map(|measured| (measured, fidelity::share_on_zero(&points, &image))))
+    });
+    Ok(measured.collect::<Result<Vec<_>, OutOfRange>>()?.into_iter().flatten().collect())
+}
+
+/// Blocks of importance 1 and 0, 32 × 64 pixels: nothing but hard edges.
+#[must_use]
+pub fn edge_image() -> Vec<f32> {
+    let side = TEST_IMAGE_SIDE;
+    let is_one = |i: usize| ((i % side) / 32 + i / side / 64).is_multiple_of(2);
+    (0..side * side).map(|i| f32::from(u8::from(is_one(i)))).collect()
 }

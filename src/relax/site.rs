@@ -50,7 +50,7 @@ pub fn sites(
             let threshold = field.threshold(node.centre);
             let (level, _, above) = level_of(threshold);
             if level == node.level && (node.rank as f64) < threshold {
-                let local = field.local(node.centre, spacing(threshold));
+                let local = field.local(node.centre);
                 sites.push(Site {
                     centre: node.centre,
                     rank: node.rank,
@@ -59,7 +59,7 @@ pub fn sites(
                     rotation: node.rotations[1],
                     classes: node.classes,
                     tau: (local / above).clamp(1.0, crate::bake::relaxation::DELTA.into()),
-                    detail: field.detail(node.centre, spacing(threshold)),
+                    detail: field.detail(node.centre),
                     spacing: spacing(local),
                 });
             }
@@ -75,6 +75,14 @@ impl Site {
     pub fn relaxed(&self, table: &Relaxation) -> DVec2 {
         let vector = table.vector(&self.classes, self.tau, self.detail);
         self.centre + turned(vector.into(), self.rotation) * self.edge
+    }
+}
+
+impl Site {
+    /// Where the point goes: [`relaxed`](Self::relaxed), held back by the field's edges.
+    #[must_use]
+    pub fn settled(&self, table: &Relaxation, field: &impl Field) -> DVec2 {
+        field.settle(self.centre, self.rank, self.relaxed(table))
     }
 }
 

@@ -3,9 +3,10 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::field::{Image, ImageRules, spacing, threshold_of_phase};
+use super::field::{spacing, threshold_of_phase};
 use super::force::{Law, Points, READS, Sum};
 use super::ground::{Ground, Region, density};
+use super::image::{Image, ImageRules};
 use super::motif;
 use super::patch::Ramp;
 use super::random::Random;
@@ -37,8 +38,6 @@ pub struct Stage {
     pub step: f32,
     /// The part of the way to the neighbour slots that a vector is pulled each sweep.
     pub pull: f32,
-    /// The part by which vectors shrink each sweep.
-    pub shrink: f32,
     /// Whether step and pull fall to a tenth over the last 40 % of the sweeps.
     pub settle: bool,
 }
@@ -69,7 +68,7 @@ pub fn pass(
     table: &mut Table,
     pass: &Pass,
     seed: u64,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(),
 ) -> Result<(), OutOfRange> {
     let intervals = table.slots().len() - 1;
     let mut patches = (0..intervals)
@@ -91,7 +90,7 @@ pub fn image_pass(
     rough: &mut Table,
     images: &ImagePass,
     seed: u64,
-    progress: &mut dyn FnMut(usize),
+    progress: &mut dyn FnMut(),
 ) -> Result<(), OutOfRange> {
     let mut patches = (0..images.patches)
         .into_par_iter()
@@ -152,12 +151,7 @@ pub struct ImagePass {
     pub stages: Vec<Stage>,
 }
 
-fn sweeps(
-    table: &mut Table,
-    patches: &mut [Points],
-    stages: &[Stage],
-    progress: &mut dyn FnMut(usize),
-) {
+fn sweeps(table: &mut Table, patches: &mut [Points], stages: &[Stage], progress: &mut dyn FnMut()) {
     let mut velocities = vec![[0.0f32; 2]; table.vectors.len()];
     for stage in stages {
         let law = stage.law.table();
@@ -176,7 +170,7 @@ fn sweeps(
             let left = (stage.sweeps - sweep) as f32 / stage.sweeps as f32;
             let settle = if stage.settle { (0.1 + 0.9 * left / 0.4).min(1.0) } else { 1.0 };
             update(table, &mut velocities, &sums, stage, settle);
-            progress(1);
+            progress();
         }
     }
 }
@@ -253,7 +247,7 @@ fn update(
                 *velocity = velocity.map(|v| v * (most / length));
             }
             for k in 0..2 {
-                vector[k] = (vector[k] + velocity[k]) * (1.0 - stage.shrink);
+                vector[k] += velocity[k];
             }
         }
     }

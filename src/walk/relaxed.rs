@@ -15,7 +15,7 @@ use super::kin::{Kin, Relation};
 use super::scalar::{Position, Scalar};
 use crate::clip::{Clip, ToCaller};
 use crate::domain::Region;
-use crate::importance::{Around, Importance};
+use crate::importance::Importance;
 use crate::placement::{FRONTIER_LEVEL, Placement};
 use crate::relaxed::RelaxationTable;
 use crate::sampling::{Sampling, SamplingError};
@@ -100,6 +100,7 @@ impl RelaxedTraversal {
             let step = |level: u8| {
                 let level = level.max(FIRST_RELAXED_LEVEL).min(MAX_LEVEL as u8);
                 2.0 * placement.half_edge(level).length() * relaxation.longest()
+                    + sampling.importance().longest_settling()
             };
             let wide = Region { radius: region.radius + step(node.level + 1), ..region };
             let own = Region { radius: placement.slack() + step(kin.born()), ..region };
@@ -171,7 +172,16 @@ impl RelaxedBatch {
                 continue;
             }
             let [dx, dy] = self.step::<P::Scalar, I>(sampling, relaxation, entry, at, value);
-            (chunk.x[kept], chunk.y[kept], chunk.entry[kept]) = (x + dx, y + dy, entry as u16);
+            let (moved_x, moved_y) = (x + dx, y + dy);
+            let moved = domain.min() + DVec2::new(moved_x.to_f64(), moved_y.to_f64());
+            let needed = sampling.scale().importance_of(rank);
+            let settled = sampling.importance().settle(at, moved, needed);
+            let [moved_x, moved_y] = if settled == moved {
+                [moved_x, moved_y]
+            } else {
+                (settled - domain.min()).to_array().map(P::Scalar::from_f64)
+            };
+            (chunk.x[kept], chunk.y[kept], chunk.entry[kept]) = (moved_x, moved_y, entry as u16);
             chunk.keep[kept] = 1;
             kept += 1;
         }
@@ -219,11 +229,10 @@ impl RelaxedBatch {
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
-        // One spacing is 1/√density.
-        let spacing = libm::sqrt(placement.ranks_per_density() / threshold);
-        let around = sampling.importance().around(at, spacing);
-        let phase = (sampling.scale().threshold(around.mean) / tiles_above).clamp(1.0, DELTA);
-        let detail = if relaxation.has_rough() { detail(&around) } else { 0.0 };
+        let importance = sampling.importance();
+        let local = sampling.scale().threshold(importance.local(at));
+        let phase = (local / tiles_above).clamp(1.0, DELTA);
+        let detail = if relaxation.has_rough() { importance.detail(at) } else { 0.0 };
         let tables = placement.tables();
         let (vector, rotation) = if i == 0 {
             let Relation { class, rotation } = self.kin.of_own_centre(tables, level);
@@ -237,18 +246,5 @@ impl RelaxedBatch {
         let frame = placement.turned_edge(level, rotation);
         let [c, s, minus_s] = [frame.x, frame.y, -frame.y].map(S::from_f64);
         [c * vx + minus_s * vy, s * vx + c * vy]
-    }
-}
-
-/// The share of the layer for detail: 0 up to a contrast ln(most/least) of 0.07, 1 from 0.6 on.
-fn detail(around: &Around) -> f64 {
-    let Around { least, most, .. } = *around;
-    // e^0.07 and e^0.6, so that even ground and hard edges take no logarithm.
-    if most <= least * 1.072_508_181_254_216_7 {
-        0.0
-    } else if most >= least * 1.822_118_800_390_508_9 {
-        1.0
-    } else {
-        ((libm::log(most / least) - 0.07) / 0.53).clamp(0.0, 1.0)
     }
 }
