@@ -162,7 +162,8 @@ impl RelaxedBatch {
         let mut kept = 0;
         for k in 0..chunk.len {
             let (x, y, entry) = (chunk.x[k], chunk.y[k], start + k);
-            let at = (domain.min() + DVec2::new(x.to_f64(), y.to_f64())).clamp(low, high);
+            let centre = domain.min() + DVec2::new(x.to_f64(), y.to_f64());
+            let at = centre.clamp(low, high);
             let value = sampling.importance().value(at);
             if !(value >= 0.0 && value <= self.batch.bound) {
                 return Err(SamplingError::InvalidValue { at, value, bound: self.batch.bound });
@@ -175,7 +176,7 @@ impl RelaxedBatch {
             let (moved_x, moved_y) = (x + dx, y + dy);
             let moved = domain.min() + DVec2::new(moved_x.to_f64(), moved_y.to_f64());
             let needed = sampling.scale().importance_of(rank);
-            let settled = sampling.importance().settle(at, moved, needed);
+            let settled = sampling.importance().settle(centre, moved, needed);
             let [moved_x, moved_y] = if settled == moved {
                 [moved_x, moved_y]
             } else {

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use twelvefold::tiling::TileType;
 
 /// The most dots that one run draws.
@@ -101,6 +101,12 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_name = "PIXELS", value_parser = positive)]
     pub(crate) dot_size: Option<f64>,
 
+    /// Where dots may lie: `relaxed` moves each a little so that they are evenly spread at every
+    /// density; `fixed` leaves them at the centres of tiles, where rows and clumps show, but where
+    /// more dots only ever add to fewer.
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Centres::Relaxed)]
+    pub(crate) centres: Centres,
+
     /// Put dots where the photograph is light, and draw them white on black.
     #[arg(long)]
     pub(crate) invert: bool,
@@ -119,6 +125,15 @@ pub(crate) struct StippleOptions {
     /// Say nothing but errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+/// Where dots may lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Centres {
+    /// Moved aside, evenly spread.
+    Relaxed,
+    /// At the centres of tiles.
+    Fixed,
 }
 
 /// Options of `twelvefold relax`.

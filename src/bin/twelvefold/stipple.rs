@@ -6,10 +6,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError};
+use twelvefold::{
+    Amount, ImageMap, Importance, InvalidPixels, Placement, Sample, Sampling, SamplingError,
+    StippleMap,
+};
 
-use crate::args::{MAX_POINTS, StippleOptions};
-use crate::drawing::{Csv, Drawing, Png, Style, Svg};
+use crate::args::{Centres, MAX_POINTS, StippleOptions};
+use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
 use crate::failure::Failure;
 use crate::output::{Output, OutputError};
 use crate::picture::{self, Tone};
@@ -52,30 +55,35 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         ),
     };
 
-    let map =
-        ImageMap::new(picture.width, picture.height, picture.importance, InvalidPixels::Reject)
-            .map_err(|error| of_photo(error.into()))?;
-    let placement = Placement::new(map.domain(), options.seed);
-    let sampling = Sampling::new(&placement, &map, Amount::Points(points))
-        .map_err(|error| of_photo(error.into()))?;
-
     let mut progress = Progress::new(points, options.quiet);
-    let drawn = match kind {
-        Kind::Csv => Csv::new(&mut output)
-            .map_err(DrawError::from)
-            .and_then(|csv| draw(&sampling, csv, &mut progress)),
-        Kind::Svg => Svg::new(&mut output, &style)
-            .map_err(DrawError::from)
-            .and_then(|svg| draw(&sampling, svg, &mut progress)),
-        Kind::Png => {
-            let png = Png::new(&mut output, &style)
-                .map_err(|error| Failure::at(&options.output, error))?;
-            draw(&sampling, png, &mut progress)
+    let (width, height, pixels) = (picture.width, picture.height, picture.importance);
+    let invalid = InvalidPixels::Reject;
+    let drawn = match options.centres {
+        Centres::Fixed => {
+            let map = ImageMap::new(width, height, pixels, invalid)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(points))
+                .map_err(|error| of_photo(error.into()))?;
+            draw_as(kind, &sampling, &style, &mut output, &mut progress)
+        }
+        Centres::Relaxed => {
+            let map = StippleMap::new(width, height, pixels, invalid, points)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(points))
+                .and_then(Sampling::relaxed)
+                .map_err(|error| of_photo(error.into()))?;
+            draw_as(kind, &sampling, &style, &mut output, &mut progress)
         }
     };
     let written = match drawn {
         Ok(()) => output.commit(),
         Err(DrawError::Write(error)) => Err(error.into()),
+        Err(DrawError::Picture(error)) => {
+            progress.finish();
+            return Err(Failure::at(&options.output, error));
+        }
         Err(DrawError::Sampling(error)) => {
             progress.finish();
             return Err(of_photo(error.into()));
@@ -144,9 +152,27 @@ fn default_dot_size(density: f64) -> f64 {
     if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
 }
 
+/// Draws every point of `sampling` as a file of this kind.
+fn draw_as(
+    kind: Kind,
+    sampling: &Sampling<'_, impl Importance>,
+    style: &Style,
+    output: &mut Output,
+    progress: &mut Progress,
+) -> Result<(), DrawError> {
+    match kind {
+        Kind::Csv => draw(sampling, Csv::new(output)?, progress),
+        Kind::Svg => draw(sampling, Svg::new(output, style)?, progress),
+        Kind::Png => {
+            let png = Png::new(output, style).map_err(DrawError::Picture)?;
+            draw(sampling, png, progress)
+        }
+    }
+}
+
 /// Puts every point of `sampling` into `drawing`.
 fn draw(
-    sampling: &Sampling<'_, ImageMap>,
+    sampling: &Sampling<'_, impl Importance>,
     mut drawing: impl Drawing,
     progress: &mut Progress,
 ) -> Result<(), DrawError> {
@@ -174,6 +200,7 @@ fn narrowed(coordinate: f64, end: f64) -> f32 {
 enum DrawError {
     Sampling(SamplingError),
     Write(io::Error),
+    Picture(PngError),
 }
 
 impl From<SamplingError> for DrawError {
