@@ -3,7 +3,6 @@
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
-use crate::walk::batch::Batch;
 use crate::walk::chunk::Chunk;
 use crate::walk::scalar::Position;
 use crate::walk::traverse::Traversal;
@@ -34,9 +33,7 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
-    clip: Clip,
     traversal: Traversal,
-    batch: Option<Batch>,
     /// The next entry of the batch.
     entry: usize,
     chunk: Chunk<P::Scalar>,
@@ -52,8 +49,6 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
             to_caller: ToCaller::new(&sampling.placement().domain())?,
             traversal: Traversal::new(&sampling, clip),
             sampling,
-            clip,
-            batch: None,
             entry: 0,
             chunk: Chunk::new(),
             next: 0,
@@ -64,23 +59,16 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     /// Fills the chunk with the next points; `false` at the end.
     fn next_chunk(&mut self) -> Result<bool, SamplingError> {
         loop {
-            let batch = match self.batch {
-                Some(batch) if self.entry < batch.end => batch,
-                _ => match self.traversal.next_batch(&self.sampling)? {
-                    Some(batch) => {
-                        self.entry = batch.start;
-                        *self.batch.insert(batch)
-                    }
-                    None => return Ok(false),
-                },
-            };
-            self.entry = self.chunk.select::<I, P>(
-                &self.sampling,
-                &self.clip,
-                &self.to_caller,
-                &batch,
-                self.entry,
-            )?;
+            if self.entry >= self.traversal.batch().end {
+                if !self.traversal.advance(&self.sampling)? {
+                    return Ok(false);
+                }
+                self.entry = self.traversal.batch().start;
+            }
+            let Self { sampling, traversal, chunk, to_caller, .. } = self;
+            let (clip, batch) = (traversal.clip(), traversal.batch());
+            self.entry =
+                chunk.select::<I, P>(sampling, clip, to_caller, batch, self.entry)?;
             self.chunk.pack();
             if self.chunk.len > 0 {
                 self.next = 0;
@@ -90,13 +78,13 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     }
 
     /// Point `i` of the chunk.
-    fn sample(&self, i: usize) -> Option<Sample<P>> {
-        let batch = self.batch.as_ref()?;
+    fn sample(&self, i: usize) -> Sample<P> {
+        let batch = self.traversal.batch();
         let block = batch.block(self.sampling.placement());
-        Some(Sample {
+        Sample {
             position: self.to_caller.place(self.chunk.x[i], self.chunk.y[i]),
-            rank: batch.rank(block, self.chunk.entry[i].into()),
-        })
+            rank: batch.rank(block, self.chunk.entry(i)),
+        }
     }
 }
 
@@ -118,7 +106,7 @@ impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
             }
         }
         self.next += 1;
-        self.sample(self.next - 1).map(Ok)
+        Some(Ok(self.sample(self.next - 1)))
     }
 }
 

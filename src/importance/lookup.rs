@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::walk::scalar::Scalar;
 
 /// Lookups handled in one pass.
-const RUN: usize = 256;
+const RUN: usize = 64;
 
 /// Where the pixels of an image lie in the caller's plane.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +75,48 @@ impl Lattice {
         }
     }
 
+    /// For discs of one radius around `origin` + (x[i], y[i]): first and last column and row, in
+    /// texels of 2^shift pixels each way, of their bounding squares. Returns shift, the least at which
+    /// no square touches more than three columns or rows.
+    #[inline(always)]
+    pub(super) fn spans(
+        &self,
+        origin: DVec2,
+        x: &[f64],
+        y: &[f64],
+        radius: f64,
+        low: &mut [[u32; 2]],
+        high: &mut [[u32; 2]],
+    ) -> usize {
+        let Self { width, height, min, texels_per_unit: scale, .. } = *self;
+        // A square touches three at most if its side is below two texels, a little less for rounding.
+        let side = (2.0 + 1e-6) * radius * scale.x.max(scale.y);
+        let greatest = usize::BITS - (width.max(height) - 1).leading_zeros();
+        let mut shift = 0;
+        let mut texels = 2.0;
+        // Few steps, the same ones in all tiles of a level.
+        while side >= texels && shift < greatest {
+            (shift, texels) = (shift + 1, 2.0 * texels);
+        }
+        let (shrink, last_x, last_y) = (2.0 / texels, (width - 1) as f64, (height - 1) as f64);
+        let index = |at: f64, min: f64, scale: f64, last: f64| {
+            let t = clamp((at - min) * scale, last) * shrink;
+            (floor(t) + INTEGERS).to_bits() as u32
+        };
+        for (((low, high), x), y) in low.iter_mut().zip(high).zip(x).zip(y) {
+            let (x, y) = (origin.x + *x, origin.y + *y);
+            *low = [
+                index(x - radius, min.x, scale.x, last_x),
+                index(y - radius, min.y, scale.y, last_y),
+            ];
+            *high = [
+                index(x + radius, min.x, scale.x, last_x),
+                index(y + radius, min.y, scale.y, last_y),
+            ];
+        }
+        shift as usize
+    }
+
     #[inline(always)]
     fn indices_double<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], indices: &mut [u32]) {
         let Self { width, height, min, texels_per_unit: scale, .. } = *self;
@@ -110,8 +152,19 @@ const INTEGERS_SINGLE: f32 = 8_388_608.0;
 /// ⌊t⌋ clamped to 0..=last, `last` an integer below 2³²; 0 for NaN.
 #[inline(always)]
 fn floor_within(t: f64, last: f64) -> f64 {
+    floor(clamp(t, last))
+}
+
+/// t clamped to 0..=last, 0 for NaN.
+#[inline(always)]
+fn clamp(t: f64, last: f64) -> f64 {
     let t = if t > 0.0 { t } else { 0.0 };
-    let t = if t < last { t } else { last };
+    if t < last { t } else { last }
+}
+
+/// ⌊t⌋, 0 ≤ t < 2⁵¹.
+#[inline(always)]
+fn floor(t: f64) -> f64 {
     let nearest = t + INTEGERS - INTEGERS;
     nearest - if nearest > t { 1.0 } else { 0.0 }
 }

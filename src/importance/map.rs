@@ -157,6 +157,9 @@ impl ImageMap {
     }
 }
 
+/// Discs whose bounds are looked up together: the children of a tile.
+const DISCS: usize = 16;
+
 /// Applies the policy to a row and sums it; the first column that it does not admit otherwise.
 fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
     let mut sum = 0.0;
@@ -180,11 +183,25 @@ impl Importance for ImageMap {
         f64::from(self.pixels[y * self.lattice.width + x])
     }
 
-    #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        let (x0, y0) = self.lattice.texel(region.centre - region.radius);
-        let (x1, y1) = self.lattice.texel(region.centre + region.radius);
-        f64::from(self.pyramid.max(&self.pixels, self.lattice.width, [x0, x1], [y0, y1]))
+        let mut bound = [0.0];
+        let DVec2 { x, y } = region.centre;
+        self.upper_bounds(DVec2::ZERO, &[x], &[y], region.radius, &mut bound);
+        bound[0]
+    }
+
+    #[inline(always)]
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        let (mut low, mut high) = ([[0u32; 2]; DISCS], [[0u32; 2]; DISCS]);
+        let discs = bounds.chunks_mut(DISCS).zip(x.chunks(DISCS)).zip(y.chunks(DISCS));
+        for ((bounds, x), y) in discs {
+            let (low, high) = (&mut low[..x.len()], &mut high[..x.len()]);
+            let shift = self.lattice.spans(origin, x, y, radius, low, high);
+            let level = self.pyramid.level(&self.pixels, self.lattice.width, shift);
+            for ((bound, low), high) in bounds.iter_mut().zip(low).zip(high) {
+                *bound = f64::from(level.max(*low, *high));
+            }
+        }
     }
 
     #[inline(always)]

@@ -44,6 +44,15 @@ pub trait Importance {
         }
     }
 
+    /// [`upper_bound`](Self::upper_bound) of each disc of one radius around the points
+    /// `origin + (x[i], y[i])`, all of one length. Worth overriding where many at once are cheaper.
+    #[inline]
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        for ((bound, x), y) in bounds.iter_mut().zip(x).zip(y) {
+            *bound = self.upper_bound(&Region { centre: origin + DVec2::new(*x, *y), radius });
+        }
+    }
+
     /// The integral over the domain, in importance × squared units, if it is known.
     fn integral(&self, domain: &Domain) -> Option<f64> {
         let _ = domain;
@@ -65,6 +74,10 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn upper_bound(&self, region: &Region) -> f64 {
         (**self).upper_bound(region)
+    }
+
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        (**self).upper_bounds(origin, x, y, radius, bounds);
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {

@@ -8,3 +8,4 @@ pub(crate) mod frame;
 pub(crate) mod node;
 pub(crate) mod scalar;
 pub(crate) mod traverse;
+pub(crate) mod vectors;
