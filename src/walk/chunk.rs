@@ -116,12 +116,17 @@ impl<S: Scalar> Chunk<S> {
     /// Moves the marked candidates to the front, in order.
     #[inline(always)]
     pub(crate) fn pack(&mut self) {
+        if !self.packed {
+            for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
+                // A block has at most 37,829 entries.
+                *entry = (self.first + i) as u16;
+            }
+        }
         let mut kept = 0;
-        for i in 0..self.len {
-            // A block has at most 37,829 entries.
-            let (x, y, entry) = (self.x[i], self.y[i], self.entry(i) as u16);
+        for i in 0..self.len.min(CHUNK) {
+            let (x, y, entry) = (self.x[i], self.y[i], self.entry[i]);
             (self.x[kept], self.y[kept], self.entry[kept]) = (x, y, entry);
-            kept += usize::from(self.keep[i] & 1);
+            kept += usize::from(self.keep[i]);
         }
         (self.len, self.packed) = (kept, true);
     }

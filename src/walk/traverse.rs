@@ -24,7 +24,7 @@ const OPEN: usize = MAX_LEVEL - FRONTIER_LEVEL as usize;
 /// texture, by 2 elsewhere), from 400 to 1600 it changes by less than a tenth.
 const FEW: usize = 800;
 
-/// The same on constant ground, for a tile across the clip's border: candidates cost little there.
+/// The same for a tile across the clip's border, where candidates may be in vain and cost more.
 const FEW_AT_BORDER: usize = 200;
 
 /// A traversal in progress. Holds everything it needs; nothing is allocated.
@@ -161,8 +161,8 @@ impl Traversal {
             };
             let few = match (constant, inside) {
                 (true, true) => usize::MAX,
-                (true, false) => FEW_AT_BORDER,
-                (false, _) => FEW,
+                (_, false) => FEW_AT_BORDER,
+                (false, true) => FEW,
             };
             if levels == 1 || end <= few {
                 self.batch.end = end;
