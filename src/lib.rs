@@ -19,7 +19,9 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
-pub use importance::{Constant, Function, ImageMap, Importance, InvalidPixels, MapError};
+pub use importance::{
+    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView,
+};
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
 pub use sampling::{Amount, Limits, Sampling, SamplingError};

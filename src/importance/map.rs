@@ -5,11 +5,13 @@ use core::fmt;
 
 use glam::DVec2;
 
-use super::Importance;
+use super::{Importance, pixels};
 use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
+use super::view::PixelView;
 use crate::domain::{Domain, Region};
 use crate::walk::scalar::Scalar;
+use crate::walk::vectors::Vectors;
 
 /// What to do with pixels that are no importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -84,7 +86,9 @@ impl core::error::Error for MapError {}
 pub struct ImageMap {
     pixels: Vec<f32>,
     pyramid: MaxPyramid,
-    /// Σ pixels, summed in row order.
+    /// Σ of each row.
+    row_sums: Vec<f64>,
+    /// Σ of those.
     sum: f64,
     domain: Domain,
     lattice: Lattice,
@@ -110,16 +114,17 @@ impl ImageMap {
             return Err(MapError::Length { expected, found: pixels.len() });
         }
         let size = DVec2::new(width as f64, height as f64);
-        let mut sum = 0.0;
         for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
-            sum +=
-                admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
+            pixels::admit(row, invalid)
+                .map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
         }
+        let row_sums: Vec<f64> = pixels.chunks_exact(width).map(pixels::sum).collect();
+        let sum = pixels::sum(&row_sums);
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
-        Ok(Self { pixels, pyramid, sum, domain, lattice })
+        Ok(Self { pixels, pyramid, row_sums, sum, domain, lattice })
     }
 
     /// The same pixels stretched over another rectangle.
@@ -130,6 +135,72 @@ impl ImageMap {
         let texels_per_unit = DVec2::new(width as f64, height as f64) / domain.size();
         self.lattice = Lattice::new(width, height, domain.min(), texels_per_unit);
         self
+    }
+
+    /// Replaces all pixels by those of a view of the same size. Allocates nothing. O(pixels).
+    ///
+    /// # Errors
+    /// [`MapError::OutsideMap`] for another size, [`MapError::InvalidPixel`] for the first pixel that
+    /// `invalid` does not admit; the map is then unchanged.
+    pub fn update(&mut self, view: &PixelView<'_>, invalid: InvalidPixels) -> Result<(), MapError> {
+        if (view.width, view.height) != self.size() {
+            return Err(MapError::OutsideMap);
+        }
+        self.update_at(0, 0, view, invalid)
+    }
+
+    /// Replaces the pixels of the rectangle at column `x` and row `y` by those of a view; `sum` and
+    /// pyramid are repaired where they depend on them. The same map as one made anew, bit for bit.
+    /// Allocates nothing. O(rows touched × width).
+    ///
+    /// # Errors
+    /// [`MapError::OutsideMap`] if the view does not fit there, [`MapError::InvalidPixel`] (in the
+    /// map's columns and rows) for the first pixel that `invalid` does not admit; the map is then
+    /// unchanged.
+    pub fn update_at(
+        &mut self,
+        x: usize,
+        y: usize,
+        view: &PixelView<'_>,
+        invalid: InvalidPixels,
+    ) -> Result<(), MapError> {
+        let (width, height) = self.size();
+        let fits = |at: usize, size: usize, of: usize| at <= of && size <= of - at;
+        if !(fits(x, view.width, width) && fits(y, view.height, height)) {
+            return Err(MapError::OutsideMap);
+        }
+        if view.width == 0 || view.height == 0 {
+            return Ok(());
+        }
+        for row in 0..view.height {
+            let pixels = view.unchecked_row(row);
+            if let Some((column, value)) = pixels.and_then(|p| pixels::first_refused(p, invalid)) {
+                return Err(MapError::InvalidPixel { x: x + column, y: y + row, value });
+            }
+        }
+        Vectors::detect().run(
+            #[inline(always)]
+            || self.replace(x, y, view, invalid),
+        );
+        Ok(())
+    }
+
+    /// [`update_at`](Self::update_at) when the view fits and no pixel is refused.
+    #[inline(always)]
+    fn replace(&mut self, x: usize, y: usize, view: &PixelView<'_>, invalid: InvalidPixels) {
+        let (width, height) = self.size();
+        for row in 0..view.height {
+            let whole = &mut self.pixels[(y + row) * width..][..width];
+            let part = &mut whole[x..x + view.width];
+            view.copy_row(row, part);
+            if invalid != InvalidPixels::Reject {
+                pixels::replace(part);
+            }
+            self.row_sums[y + row] = pixels::sum(whole);
+        }
+        self.sum = pixels::sum(&self.row_sums);
+        let high = [x + view.width - 1, y + view.height - 1];
+        self.pyramid.update(&self.pixels, (width, height), [x, y], high);
     }
 
     /// The rectangle that the image covers.
@@ -159,23 +230,6 @@ impl ImageMap {
 
 /// Discs whose bounds are looked up together: the children of a tile.
 const DISCS: usize = 16;
-
-/// Applies the policy to a row and sums it; the first column that it does not admit otherwise.
-fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
-    let mut sum = 0.0;
-    for (x, pixel) in row.iter_mut().enumerate() {
-        let value = *pixel;
-        if !(value >= 0.0 && value < f32::INFINITY) {
-            match invalid {
-                InvalidPixels::ZeroAll => *pixel = 0.0,
-                InvalidPixels::ZeroNegative if value < 0.0 && value.is_finite() => *pixel = 0.0,
-                _ => return Err((x, value)),
-            }
-        }
-        sum += f64::from(*pixel);
-    }
-    Ok(sum)
-}
 
 impl Importance for ImageMap {
     fn value(&self, at: DVec2) -> f64 {

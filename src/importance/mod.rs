@@ -8,11 +8,14 @@ mod constant;
 mod function;
 mod lookup;
 mod map;
+mod pixels;
 mod pyramid;
+mod view;
 
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
+pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
 

@@ -27,22 +27,37 @@ impl MaxPyramid {
             levels.push(Level { start: total, width: w, height: h });
             total += w * h;
         }
-        let mut texels = alloc::vec![0.0; total];
-        let (mut source_width, mut source_height) = (width, height);
-        for i in 0..levels.len() {
-            let level = levels[i];
-            let (done, rest) = texels.split_at_mut(level.start);
-            let source = if i == 0 { pixels } else { &done[levels[i - 1].start..] };
-            for y in 0..level.height {
-                let row = &source[2 * y * source_width..][..source_width];
+        let mut pyramid = Self { texels: alloc::vec![0.0; total], levels };
+        pyramid.update(pixels, (width, height), [0, 0], [width - 1, height - 1]);
+        pyramid
+    }
+
+    /// Recomputes what depends on the pixels in columns `low[0]`..=`high[0]` and rows
+    /// `low[1]`..=`high[1]`: their number and a third, and a few texels a level.
+    #[inline(always)]
+    pub(super) fn update(
+        &mut self,
+        pixels: &[f32],
+        (mut source_width, mut source_height): (usize, usize),
+        mut low: [usize; 2],
+        mut high: [usize; 2],
+    ) {
+        for i in 0..self.levels.len() {
+            (low, high) = (low.map(|i| i / 2), high.map(|i| i / 2));
+            let level = self.levels[i];
+            let (done, rest) = self.texels.split_at_mut(level.start);
+            let source = if i == 0 { pixels } else { &done[self.levels[i - 1].start..] };
+            let columns = low[0]..high[0] + 1;
+            let source_columns = 2 * columns.start..(2 * columns.end).min(source_width);
+            for y in low[1]..=high[1] {
+                let row = &source[2 * y * source_width..][source_columns.clone()];
                 let below = (2 * y + 1).min(source_height - 1);
-                let below = &source[below * source_width..][..source_width];
-                let target = &mut rest[y * level.width..][..level.width];
+                let below = &source[below * source_width..][source_columns.clone()];
+                let target = &mut rest[y * level.width..][columns.clone()];
                 reduce_rows(row, below, target);
             }
             (source_width, source_height) = (level.width, level.height);
         }
-        Self { texels, levels }
     }
 
     /// The level whose texels are 2^shift pixels wide; the last one if there are fewer.
@@ -82,6 +97,7 @@ impl Texels<'_> {
 }
 
 /// Maxima of 2×2 blocks of two rows; the last block of an odd row is 1 wide.
+#[inline(always)]
 fn reduce_rows(row: &[f32], below: &[f32], target: &mut [f32]) {
     let larger = |a: f32, b: f32| if a > b { a } else { b };
     let (pairs, odd) = row.as_chunks::<2>();
