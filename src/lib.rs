@@ -71,7 +71,8 @@ mod walk;
 
 pub use domain::{Domain, DomainError, Region};
 pub use importance::{
-    Constant, Function, ImageMap, Importance, Interpolation, InvalidPixels, MapError, StippleMap,
+    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView,
+    StippleMap,
 };
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};

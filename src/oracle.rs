@@ -172,8 +172,7 @@ mod tests {
     use crate::bake;
     use crate::bake::relaxation::{Layer, Slot, born_classes};
     use crate::{
-        Amount, Constant, Domain, Function, ImageMap, Interpolation, InvalidPixels, Placement,
-        StippleMap, Tables,
+        Amount, Constant, Domain, Function, ImageMap, InvalidPixels, Placement, StippleMap, Tables,
     };
     use glam::Vec2;
     use proptest::prelude::*;
@@ -261,11 +260,8 @@ mod tests {
             (width, height) in (1usize..20, 1usize..20),
             count in 3.0..150.0f64,
             contrast in prop_oneof![Just(0.0f32), Just(1.0), Just(40.0)],
-            bilinear: bool,
         ) {
-            let interpolation =
-                if bilinear { Interpolation::Bilinear } else { Interpolation::Nearest };
-            let map = random_map(width, height, contrast, seed).interpolated(interpolation);
+            let map = random_map(width, height, contrast, seed);
             prop_assume!(map.mean() > 0.0);
             let rules = Tables::built_in().rules();
             let relaxation = random_relaxation(&rules, seed);

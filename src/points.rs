@@ -4,7 +4,7 @@ use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
 use crate::walk::chunk::Chunk;
-use crate::walk::either::{AnyBatch, AnyTraversal};
+use crate::walk::either::AnyTraversal;
 use crate::walk::scalar::Position;
 
 /// A point of the set.
@@ -33,9 +33,7 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
-    clip: Clip,
     traversal: AnyTraversal,
-    batch: Option<AnyBatch>,
     /// The next entry of the batch.
     entry: usize,
     chunk: Chunk<P::Scalar>,
@@ -51,8 +49,6 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
             to_caller: ToCaller::new(&sampling.placement().domain())?,
             traversal: AnyTraversal::new(&sampling, clip),
             sampling,
-            clip,
-            batch: None,
             entry: 0,
             chunk: Chunk::new(),
             next: 0,
@@ -63,23 +59,14 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     /// Fills the chunk with the next points; `false` at the end.
     fn next_chunk(&mut self) -> Result<bool, SamplingError> {
         loop {
-            let batch = match self.batch {
-                Some(batch) if self.entry < batch.entries().end => batch,
-                _ => match self.traversal.next_batch(&self.sampling)? {
-                    Some(batch) => {
-                        self.entry = batch.entries().start;
-                        *self.batch.insert(batch)
-                    }
-                    None => return Ok(false),
-                },
-            };
-            self.entry = batch.select::<I, P>(
-                &self.sampling,
-                &self.clip,
-                &self.to_caller,
-                self.entry,
-                &mut self.chunk,
-            )?;
+            if self.entry >= self.traversal.batch().end {
+                if !self.traversal.advance(&self.sampling)? {
+                    return Ok(false);
+                }
+                self.entry = self.traversal.batch().start;
+            }
+            let Self { sampling, traversal, chunk, to_caller, .. } = self;
+            self.entry = traversal.select::<I, P>(sampling, to_caller, self.entry, chunk)?;
             self.chunk.pack();
             if self.chunk.len > 0 {
                 self.next = 0;
@@ -89,13 +76,13 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     }
 
     /// Point `i` of the chunk.
-    fn sample(&self, i: usize) -> Option<Sample<P>> {
-        let batch = self.batch.as_ref()?.entries();
+    fn sample(&self, i: usize) -> Sample<P> {
+        let batch = self.traversal.batch();
         let block = batch.block(self.sampling.placement());
-        Some(Sample {
+        Sample {
             position: self.to_caller.place(self.chunk.x[i], self.chunk.y[i]),
-            rank: batch.rank(block, self.chunk.entry[i].into()),
-        })
+            rank: batch.rank(block, self.chunk.entry(i)),
+        }
     }
 }
 
@@ -117,7 +104,7 @@ impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
             }
         }
         self.next += 1;
-        self.sample(self.next - 1).map(Ok)
+        Some(Ok(self.sample(self.next - 1)))
     }
 }
 

@@ -273,6 +273,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     }
 
     /// The number of ranks that an upper bound admits; it need not be one that the library computed.
+    #[inline]
     pub(crate) fn rank_limit_of_bound(
         &self,
         bound: f64,
@@ -355,8 +356,9 @@ impl RankScale {
     pub(crate) fn limit(self, value: f64) -> u64 {
         let limit = self.limit_before_rounding(value);
         // Truncation takes NaN and negative numbers to 0 and saturates above.
-        let whole = limit as u64;
-        whole.saturating_add(u64::from((whole as f64) < limit))
+        let whole = limit as i64;
+        // The conversion back is exact, or both are past 2⁵³ and integers.
+        (whole.max(0) as u64) + u64::from(whole as f64 >= 0.0 && (whole as f64) < limit)
     }
 
     /// T − u: an integer k below 2⁵³ is under `limit(value)` exactly when k < this.

@@ -5,12 +5,10 @@
 
 use glam::DVec2;
 
-use super::pyramid::MaxPyramid;
-use crate::domain::Region;
 use crate::walk::scalar::Scalar;
 
 /// Lookups handled in one pass.
-const RUN: usize = 256;
+const RUN: usize = 64;
 
 /// Where the pixels of an image lie in the caller's plane.
 #[derive(Clone, Copy, Debug)]
@@ -44,40 +42,6 @@ impl Lattice {
         ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
     }
 
-    /// Between the centres of the four pixels around a point, the border's beyond the image.
-    pub(super) fn bilinear<T: Copy + Into<f64>>(&self, pixels: &[T], at: DVec2) -> f64 {
-        let t = (at - self.min) * self.texels_per_unit - 0.5;
-        // `max` first: it takes NaN to 0.
-        let corner = t.max(DVec2::ZERO);
-        let (x0, y0) =
-            ((corner.x as usize).min(self.width - 1), (corner.y as usize).min(self.height - 1));
-        let (x1, y1) = ((x0 + 1).min(self.width - 1), (y0 + 1).min(self.height - 1));
-        // Past the last centre both neighbours are the same pixel, whatever the weight.
-        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
-        let pixel = |x: usize, y: usize| pixels[y * self.width + x].into();
-        let (a, b, c, d): (f64, f64, f64, f64) =
-            (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
-        let upper = a + (b - a) * weight.x;
-        let lower = c + (d - c) * weight.x;
-        // Rounding must not carry the value past its own bound.
-        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
-    }
-
-    /// An upper bound of [`bilinear`](Self::bilinear) in a region: those values depend on the pixels
-    /// whose centres lie less than one pixel away.
-    pub(super) fn bilinear_bound(
-        &self,
-        pyramid: &MaxPyramid,
-        pixels: &[f32],
-        region: &Region,
-    ) -> f64 {
-        // A little more than half a pixel from the square's border outruns rounding.
-        let margin = region.radius + 0.500_001 / self.texels_per_unit;
-        let (x0, y0) = self.texel(region.centre - margin);
-        let (x1, y1) = self.texel(region.centre + margin);
-        f64::from(pyramid.max(pixels, self.width, [x0, x1], [y0, y1]))
-    }
-
     /// `values[i]` = the pixel under `origin` + (x[i], y[i]).
     #[inline(always)]
     pub(super) fn values<S: Scalar>(
@@ -109,6 +73,48 @@ impl Lattice {
                 *value = f64::from(pixels[*index as usize]);
             }
         }
+    }
+
+    /// For discs of one radius around `origin` + (x[i], y[i]): first and last column and row, in
+    /// texels of 2^shift pixels each way, of their bounding squares. Returns shift, the least at which
+    /// no square touches more than three columns or rows.
+    #[inline(always)]
+    pub(super) fn spans(
+        &self,
+        origin: DVec2,
+        x: &[f64],
+        y: &[f64],
+        radius: f64,
+        low: &mut [[u32; 2]],
+        high: &mut [[u32; 2]],
+    ) -> usize {
+        let Self { width, height, min, texels_per_unit: scale, .. } = *self;
+        // A square touches three at most if its side is below two texels, a little less for rounding.
+        let side = (2.0 + 1e-6) * radius * scale.x.max(scale.y);
+        let greatest = usize::BITS - (width.max(height) - 1).leading_zeros();
+        let mut shift = 0;
+        let mut texels = 2.0;
+        // Few steps, the same ones in all tiles of a level.
+        while side >= texels && shift < greatest {
+            (shift, texels) = (shift + 1, 2.0 * texels);
+        }
+        let (shrink, last_x, last_y) = (2.0 / texels, (width - 1) as f64, (height - 1) as f64);
+        let index = |at: f64, min: f64, scale: f64, last: f64| {
+            let t = clamp((at - min) * scale, last) * shrink;
+            (floor(t) + INTEGERS).to_bits() as u32
+        };
+        for (((low, high), x), y) in low.iter_mut().zip(high).zip(x).zip(y) {
+            let (x, y) = (origin.x + *x, origin.y + *y);
+            *low = [
+                index(x - radius, min.x, scale.x, last_x),
+                index(y - radius, min.y, scale.y, last_y),
+            ];
+            *high = [
+                index(x + radius, min.x, scale.x, last_x),
+                index(y + radius, min.y, scale.y, last_y),
+            ];
+        }
+        shift as usize
     }
 
     #[inline(always)]
@@ -146,8 +152,19 @@ const INTEGERS_SINGLE: f32 = 8_388_608.0;
 /// ⌊t⌋ clamped to 0..=last, `last` an integer below 2³²; 0 for NaN.
 #[inline(always)]
 fn floor_within(t: f64, last: f64) -> f64 {
+    floor(clamp(t, last))
+}
+
+/// t clamped to 0..=last, 0 for NaN.
+#[inline(always)]
+fn clamp(t: f64, last: f64) -> f64 {
     let t = if t > 0.0 { t } else { 0.0 };
-    let t = if t < last { t } else { last };
+    if t < last { t } else { last }
+}
+
+/// ⌊t⌋, 0 ≤ t < 2⁵¹.
+#[inline(always)]
+fn floor(t: f64) -> f64 {
     let nearest = t + INTEGERS - INTEGERS;
     nearest - if nearest > t { 1.0 } else { 0.0 }
 }

@@ -5,11 +5,13 @@ use core::fmt;
 
 use glam::DVec2;
 
-use super::Importance;
 use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
+use super::view::PixelView;
+use super::{Importance, pixels};
 use crate::domain::{Domain, Region};
 use crate::walk::scalar::Scalar;
+use crate::walk::vectors::Vectors;
 
 /// What to do with pixels that are no importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -75,17 +77,7 @@ impl fmt::Display for MapError {
 
 impl core::error::Error for MapError {}
 
-/// What an image is between the centres of its pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Interpolation {
-    /// Each pixel's value holds over the pixel's whole half-open square.
-    #[default]
-    Nearest,
-    /// Linear in x and in y between the centres of four neighbouring pixels.
-    Bilinear,
-}
-
-/// An image as importance, constant over each pixel or bilinear between their centres.
+/// An image as importance: each pixel's value holds over the pixel's whole half-open square.
 ///
 /// The image is stretched over a [`Domain`], by default [0, width) × [0, height): x to the right,
 /// y down, row by row. Outside its domain the nearest pixel counts. Keeps a max pyramid, a third of
@@ -94,11 +86,12 @@ pub enum Interpolation {
 pub struct ImageMap {
     pixels: Vec<f32>,
     pyramid: MaxPyramid,
-    /// Σ pixels, summed in row order.
+    /// Σ of each row.
+    row_sums: Vec<f64>,
+    /// Σ of those.
     sum: f64,
     domain: Domain,
     lattice: Lattice,
-    interpolation: Interpolation,
 }
 
 impl ImageMap {
@@ -113,17 +106,33 @@ impl ImageMap {
         mut pixels: Vec<f32>,
         invalid: InvalidPixels,
     ) -> Result<Self, MapError> {
-        let (domain, sum) = admit_all(width, height, &mut pixels, invalid)?;
+        if width == 0 || height == 0 {
+            return Err(MapError::Empty { width, height });
+        }
+        let expected = width.saturating_mul(height);
+        if pixels.len() != expected {
+            return Err(MapError::Length { expected, found: pixels.len() });
+        }
+        let size = DVec2::new(width as f64, height as f64);
+        for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
+            pixels::admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel {
+                x,
+                y,
+                value,
+            })?;
+        }
+        let row_sums: Vec<f64> = pixels.chunks_exact(width).map(pixels::sum).collect();
+        let sum = pixels::sum(&row_sums);
+        let domain =
+            Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let pyramid = MaxPyramid::new(&pixels, width, height);
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
-        let interpolation = Interpolation::Nearest;
-        Ok(Self { pixels, pyramid, sum, domain, lattice, interpolation })
+        Ok(Self { pixels, pyramid, row_sums, sum, domain, lattice })
     }
 
-    /// The same pixels, interpolated otherwise. The integral over the image stays the same.
-    #[must_use]
-    pub fn interpolated(self, interpolation: Interpolation) -> Self {
-        Self { interpolation, ..self }
+    /// The pixels, without the rest.
+    pub(super) fn into_pixels(self) -> Vec<f32> {
+        self.pixels
     }
 
     /// The same pixels stretched over another rectangle.
@@ -134,6 +143,72 @@ impl ImageMap {
         let texels_per_unit = DVec2::new(width as f64, height as f64) / domain.size();
         self.lattice = Lattice::new(width, height, domain.min(), texels_per_unit);
         self
+    }
+
+    /// Replaces all pixels by those of a view of the same size. Allocates nothing. O(pixels).
+    ///
+    /// # Errors
+    /// [`MapError::OutsideMap`] for another size, [`MapError::InvalidPixel`] for the first pixel that
+    /// `invalid` does not admit; the map is then unchanged.
+    pub fn update(&mut self, view: &PixelView<'_>, invalid: InvalidPixels) -> Result<(), MapError> {
+        if (view.width, view.height) != self.size() {
+            return Err(MapError::OutsideMap);
+        }
+        self.update_at(0, 0, view, invalid)
+    }
+
+    /// Replaces the pixels of the rectangle at column `x` and row `y` by those of a view; `sum` and
+    /// pyramid are repaired where they depend on them. The same map as one made anew, bit for bit.
+    /// Allocates nothing. O(rows touched × width).
+    ///
+    /// # Errors
+    /// [`MapError::OutsideMap`] if the view does not fit there, [`MapError::InvalidPixel`] (in the
+    /// map's columns and rows) for the first pixel that `invalid` does not admit; the map is then
+    /// unchanged.
+    pub fn update_at(
+        &mut self,
+        x: usize,
+        y: usize,
+        view: &PixelView<'_>,
+        invalid: InvalidPixels,
+    ) -> Result<(), MapError> {
+        let (width, height) = self.size();
+        let fits = |at: usize, size: usize, of: usize| at <= of && size <= of - at;
+        if !(fits(x, view.width, width) && fits(y, view.height, height)) {
+            return Err(MapError::OutsideMap);
+        }
+        if view.width == 0 || view.height == 0 {
+            return Ok(());
+        }
+        for row in 0..view.height {
+            let pixels = view.unchecked_row(row);
+            if let Some((column, value)) = pixels.and_then(|p| pixels::first_refused(p, invalid)) {
+                return Err(MapError::InvalidPixel { x: x + column, y: y + row, value });
+            }
+        }
+        Vectors::detect().run(
+            #[inline(always)]
+            || self.replace(x, y, view, invalid),
+        );
+        Ok(())
+    }
+
+    /// [`update_at`](Self::update_at) when the view fits and no pixel is refused.
+    #[inline(always)]
+    fn replace(&mut self, x: usize, y: usize, view: &PixelView<'_>, invalid: InvalidPixels) {
+        let (width, height) = self.size();
+        for row in 0..view.height {
+            let whole = &mut self.pixels[(y + row) * width..][..width];
+            let part = &mut whole[x..x + view.width];
+            view.copy_row(row, part);
+            if invalid != InvalidPixels::Reject {
+                pixels::replace(part);
+            }
+            self.row_sums[y + row] = pixels::sum(whole);
+        }
+        self.sum = pixels::sum(&self.row_sums);
+        let high = [x + view.width - 1, y + view.height - 1];
+        self.pyramid.update(&self.pixels, (width, height), [x, y], high);
     }
 
     /// The rectangle that the image covers.
@@ -161,78 +236,39 @@ impl ImageMap {
     }
 }
 
-/// Checks the shape, applies the policy to all pixels, and gives the rectangle [0, width) × [0, height)
-/// and their sum, in row order.
-pub(super) fn admit_all(
-    width: usize,
-    height: usize,
-    pixels: &mut [f32],
-    invalid: InvalidPixels,
-) -> Result<(Domain, f64), MapError> {
-    if width == 0 || height == 0 {
-        return Err(MapError::Empty { width, height });
-    }
-    let expected = width.saturating_mul(height);
-    if pixels.len() != expected {
-        return Err(MapError::Length { expected, found: pixels.len() });
-    }
-    let mut sum = 0.0;
-    for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
-        sum += admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
-    }
-    let size = DVec2::new(width as f64, height as f64);
-    let domain = Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
-    Ok((domain, sum))
-}
-
-/// Applies the policy to a row and sums it; the first column that it does not admit otherwise.
-fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
-    let mut sum = 0.0;
-    for (x, pixel) in row.iter_mut().enumerate() {
-        let value = *pixel;
-        if !(value >= 0.0 && value < f32::INFINITY) {
-            match invalid {
-                InvalidPixels::ZeroAll => *pixel = 0.0,
-                InvalidPixels::ZeroNegative if value < 0.0 && value.is_finite() => *pixel = 0.0,
-                _ => return Err((x, value)),
-            }
-        }
-        sum += f64::from(*pixel);
-    }
-    Ok(sum)
-}
+/// Discs whose bounds are looked up together: the children of a tile.
+const DISCS: usize = 16;
 
 impl Importance for ImageMap {
     fn value(&self, at: DVec2) -> f64 {
-        match self.interpolation {
-            Interpolation::Nearest => {
-                let (x, y) = self.lattice.texel(at);
-                f64::from(self.pixels[y * self.lattice.width + x])
-            }
-            Interpolation::Bilinear => self.lattice.bilinear(&self.pixels, at),
-        }
+        let (x, y) = self.lattice.texel(at);
+        f64::from(self.pixels[y * self.lattice.width + x])
     }
 
-    #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        if self.interpolation == Interpolation::Bilinear {
-            return self.lattice.bilinear_bound(&self.pyramid, &self.pixels, region);
+        let mut bound = [0.0];
+        let DVec2 { x, y } = region.centre;
+        self.upper_bounds(DVec2::ZERO, &[x], &[y], region.radius, &mut bound);
+        bound[0]
+    }
+
+    #[inline(always)]
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        let (mut low, mut high) = ([[0u32; 2]; DISCS], [[0u32; 2]; DISCS]);
+        let discs = bounds.chunks_mut(DISCS).zip(x.chunks(DISCS)).zip(y.chunks(DISCS));
+        for ((bounds, x), y) in discs {
+            let (low, high) = (&mut low[..x.len()], &mut high[..x.len()]);
+            let shift = self.lattice.spans(origin, x, y, radius, low, high);
+            let level = self.pyramid.level(&self.pixels, self.lattice.width, shift);
+            for ((bound, low), high) in bounds.iter_mut().zip(low).zip(high) {
+                *bound = f64::from(level.max(*low, *high));
+            }
         }
-        let (x0, y0) = self.lattice.texel(region.centre - region.radius);
-        let (x1, y1) = self.lattice.texel(region.centre + region.radius);
-        f64::from(self.pyramid.max(&self.pixels, self.lattice.width, [x0, x1], [y0, y1]))
     }
 
     #[inline(always)]
     fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
-        match self.interpolation {
-            Interpolation::Nearest => self.lattice.values(&self.pixels, origin, x, y, values),
-            Interpolation::Bilinear => {
-                for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
-                    *value = self.value(origin + DVec2::new(x.to_f64(), y.to_f64()));
-                }
-            }
-        }
+        self.lattice.values(&self.pixels, origin, x, y, values);
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {

@@ -8,13 +8,16 @@ mod constant;
 mod function;
 mod lookup;
 mod map;
+mod pixels;
 mod pyramid;
 mod stipple;
+mod view;
 
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
-pub use map::{ImageMap, Interpolation, InvalidPixels, MapError};
+pub use map::{ImageMap, InvalidPixels, MapError};
 pub use stipple::StippleMap;
+pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
 
@@ -43,6 +46,15 @@ pub trait Importance {
     {
         for ((value, x), y) in values.iter_mut().zip(x).zip(y) {
             *value = self.value(origin + DVec2::new(x.to_f64(), y.to_f64()));
+        }
+    }
+
+    /// [`upper_bound`](Self::upper_bound) of each disc of one radius around the points
+    /// `origin + (x[i], y[i])`, all of one length. Worth overriding where many at once are cheaper.
+    #[inline]
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        for ((bound, x), y) in bounds.iter_mut().zip(x).zip(y) {
+            *bound = self.upper_bound(&Region { centre: origin + DVec2::new(*x, *y), radius });
         }
     }
 
@@ -95,6 +107,10 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn upper_bound(&self, region: &Region) -> f64 {
         (**self).upper_bound(region)
+    }
+
+    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
+        (**self).upper_bounds(origin, x, y, radius, bounds);
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {

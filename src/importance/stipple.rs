@@ -18,10 +18,7 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::Importance;
-use super::lookup::Lattice;
-use super::map::{InvalidPixels, MapError, admit_all};
-use super::pyramid::MaxPyramid;
+use super::{ImageMap, Importance, InvalidPixels, MapError};
 use crate::domain::{Domain, Region};
 
 /// Half-side, in spacings, of the box whose mean decides on acceptance.
@@ -50,17 +47,14 @@ const WAYS: [f64; 3] = [0.5, 0.25, 0.0];
 /// softened by half a spacing. Keeps some 15 bytes a pixel.
 #[derive(Clone, Debug)]
 pub struct StippleMap {
-    lattice: Lattice,
-    domain: Domain,
+    width: usize,
+    height: usize,
     /// The image itself.
     importance: Vec<f32>,
+    acceptance: ImageMap,
     phase: Vec<f32>,
-    acceptance: Vec<f32>,
     /// 0 … 255.
     detail: Vec<u8>,
-    pyramid: MaxPyramid,
-    /// Σ acceptance.
-    sum: f64,
     /// The spacing of importance 1, in pixels: 1/√(points a pixel).
     spacing_of_one: f64,
     largest_spacing: f64,
@@ -72,91 +66,135 @@ impl StippleMap {
     /// An all-zero image is allowed, and holds no points.
     ///
     /// # Errors
-    /// [`MapError`] as for [`ImageMap::new`](super::ImageMap::new).
+    /// [`MapError`] as for [`ImageMap::new`].
     pub fn new(
         width: usize,
         height: usize,
-        mut pixels: Vec<f32>,
+        pixels: Vec<f32>,
         invalid: InvalidPixels,
         points: f64,
     ) -> Result<Self, MapError> {
-        let (domain, total) = admit_all(width, height, &mut pixels, invalid)?;
+        let image = ImageMap::new(width, height, pixels, invalid)?;
+        let mean = image.mean();
+        let importance = image.into_pixels();
         // Fewer than one point, or NaN, is a spacing of the whole image.
         let points = if points > 1.0 { points } else { 1.0 };
-        let mean = total / pixels.len() as f64;
-        let mean_spacing = libm::sqrt(pixels.len() as f64 / points);
-        let mut map = Self {
-            lattice: Lattice::new(width, height, DVec2::ZERO, DVec2::ONE),
-            domain,
-            phase: Vec::with_capacity(pixels.len()),
-            acceptance: Vec::with_capacity(pixels.len()),
-            detail: Vec::with_capacity(pixels.len()),
-            importance: pixels,
-            pyramid: MaxPyramid::new(&[], 0, 0),
-            sum: 0.0,
+        let mean_spacing = libm::sqrt(importance.len() as f64 / points);
+        let scales = Scales {
             spacing_of_one: mean_spacing * libm::sqrt(mean),
-            largest_spacing: LARGEST_SPACING * mean_spacing,
+            mean_spacing,
+            largest: LARGEST_SPACING * mean_spacing,
+            crumb: 1e-9 * mean,
         };
-        map.make_maps(mean, mean_spacing);
-        map.pyramid = MaxPyramid::new(&map.acceptance, width, height);
-        map.sum = map
-            .acceptance
-            .chunks(width)
-            .map(|row| row.iter().copied().map(f64::from).sum::<f64>())
-            .sum();
-        Ok(map)
+        let Planes { acceptance, phase, detail } = Planes::new(&importance, width, height, &scales);
+        let acceptance = ImageMap::new(width, height, acceptance, InvalidPixels::Reject)?;
+        let Scales { spacing_of_one, largest: largest_spacing, .. } = scales;
+        Ok(Self {
+            width,
+            height,
+            importance,
+            acceptance,
+            phase,
+            detail,
+            spacing_of_one,
+            largest_spacing,
+        })
     }
 
     /// The rectangle that the image covers.
     #[must_use]
     pub fn domain(&self) -> Domain {
-        self.domain
+        self.acceptance.domain()
+    }
+
+    /// Between the centres of the four pixels around a point, the border's beyond the image.
+    fn bilinear<T: Copy + Into<f64>>(&self, plane: &[T], at: DVec2) -> f64 {
+        // `max` takes NaN to 0.
+        let corner = (at - 0.5).max(DVec2::ZERO);
+        let (last_x, last_y) = (self.width - 1, self.height - 1);
+        let (x0, y0) = ((corner.x as usize).min(last_x), (corner.y as usize).min(last_y));
+        let (x1, y1) = ((x0 + 1).min(last_x), (y0 + 1).min(last_y));
+        // Past the last centre both neighbours are the same pixel, whatever the weight.
+        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
+        let pixel = |x: usize, y: usize| plane[y * self.width + x].into();
+        let (a, b, c, d): (f64, f64, f64, f64) =
+            (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
+        let upper = a + (b - a) * weight.x;
+        let lower = c + (d - c) * weight.x;
+        // Rounding must not carry the value past its own bound.
+        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
+    }
+
+    /// The image's pixel under a point, the nearest one beyond the image.
+    fn pixel_under(&self, at: DVec2) -> f64 {
+        let x = (at.x as usize).min(self.width - 1);
+        let y = (at.y as usize).min(self.height - 1);
+        f64::from(self.importance[y * self.width + x])
     }
 
     /// The spacing of points where the importance is `importance`, in pixels, capped.
     fn spacing(&self, importance: f64) -> f64 {
-        if importance > 0.0 {
-            (self.spacing_of_one / libm::sqrt(importance)).min(self.largest_spacing)
-        } else {
-            self.largest_spacing
-        }
+        spacing(self.spacing_of_one, self.largest_spacing, importance)
     }
+}
 
-    fn make_maps(&mut self, mean: f64, mean_spacing: f64) {
-        let (width, height) = (self.lattice.width, self.lattice.height);
+fn spacing(of_one: f64, largest: f64, importance: f64) -> f64 {
+    if importance > 0.0 { (of_one / libm::sqrt(importance)).min(largest) } else { largest }
+}
+
+/// Lengths in pixels and the importance that is none.
+struct Scales {
+    spacing_of_one: f64,
+    mean_spacing: f64,
+    largest: f64,
+    /// Differences of sums leave crumbs where the image is 0: below this there is nothing.
+    crumb: f64,
+}
+
+/// The maps that points read.
+struct Planes {
+    acceptance: Vec<f32>,
+    phase: Vec<f32>,
+    detail: Vec<u8>,
+}
+
+impl Planes {
+    fn new(importance: &[f32], width: usize, height: usize, scales: &Scales) -> Self {
+        let plane = || Vec::with_capacity(importance.len());
+        let mut planes = Self {
+            acceptance: plane(),
+            phase: plane(),
+            detail: Vec::with_capacity(importance.len()),
+        };
         // Boxes reach at most so many rows up and down; bands of rows share one table of sums.
-        let reach = (libm::ceil(self.largest_spacing).min(height as f64) as usize) + 1;
+        let reach = (libm::ceil(scales.largest).min(height as f64) as usize) + 1;
         let band = reach.max(32);
         for first in (0..height).step_by(band) {
             let rows = first..(first + band).min(height);
             let from = rows.start.saturating_sub(reach);
             let until = (rows.end + reach).min(height);
-            let sums = Sums::new(&self.importance, width, from..until);
+            let sums = Sums::new(importance, width, from..until);
             for y in rows {
                 for x in 0..width {
-                    self.push_pixel(
-                        &sums,
-                        DVec2::new(x as f64 + 0.5, y as f64 + 0.5),
-                        mean,
-                        mean_spacing,
-                    );
+                    let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                    planes.push_pixel(&sums, centre, scales);
                 }
             }
         }
+        planes
     }
 
-    fn push_pixel(&mut self, sums: &Sums, centre: DVec2, mean: f64, mean_spacing: f64) {
-        let [around, _] = sums.means(centre, mean_spacing);
-        let [phase, _] = sums.means(centre, self.spacing(around));
-        let spacing = self.spacing(phase);
-        let [acceptance, _] = sums.means(centre, ACCEPT_RADIUS * spacing);
-        let [local, square] = sums.means(centre, spacing);
+    fn push_pixel(&mut self, sums: &Sums, centre: DVec2, scales: &Scales) {
+        let spacing = |importance| spacing(scales.spacing_of_one, scales.largest, importance);
+        let [around, _] = sums.means(centre, scales.mean_spacing);
+        let [phase, _] = sums.means(centre, spacing(around));
+        let local_spacing = spacing(phase);
+        let [acceptance, _] = sums.means(centre, ACCEPT_RADIUS * local_spacing);
+        let [local, square] = sums.means(centre, local_spacing);
         let deviation = libm::sqrt((square - local * local).max(0.0));
         let [low, high] = DETAIL_RANGE.map(|r| r * local);
         let share = if high > low { (deviation - low) / (high - low) } else { 0.0 };
-        // Differences of sums leave crumbs where the image is 0: no importance at all is below this.
-        let crumb = 1e-9 * mean;
-        let clean = |value: f64| if value > crumb { value as f32 } else { 0.0 };
+        let clean = |value: f64| if value > scales.crumb { value as f32 } else { 0.0 };
         self.phase.push(clean(phase));
         self.acceptance.push(clean(acceptance));
         self.detail.push((share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
@@ -165,32 +203,31 @@ impl StippleMap {
 
 impl Importance for StippleMap {
     fn value(&self, at: DVec2) -> f64 {
-        self.lattice.bilinear(&self.acceptance, at)
+        self.bilinear(self.acceptance.pixels(), at)
     }
 
     fn upper_bound(&self, region: &Region) -> f64 {
-        self.lattice.bilinear_bound(&self.pyramid, &self.acceptance, region)
+        // Values depend on the pixels whose centres lie less than one pixel away; a little more than
+        // half a pixel from the square's border outruns rounding.
+        self.acceptance.upper_bound(&Region { radius: region.radius + 0.500_001, ..*region })
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
-        (*domain == self.domain).then_some(self.sum)
+        (*domain == self.domain()).then(|| self.acceptance.mean() * domain.area())
     }
 
     fn local(&self, at: DVec2) -> f64 {
-        self.lattice.bilinear(&self.phase, at)
+        self.bilinear(&self.phase, at)
     }
 
     fn detail(&self, at: DVec2) -> f64 {
-        self.lattice.bilinear(&self.detail, at) * (1.0 / 255.0)
+        self.bilinear(&self.detail, at) * (1.0 / 255.0)
     }
 
     fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let needed = TOLERANCE * needed;
         // The pixel under the point, not a mixture of pixels: edges stay as sharp as the image's.
-        let allowed = |p: DVec2| {
-            let (x, y) = self.lattice.texel(p);
-            needed < f64::from(self.importance[y * self.lattice.width + x])
-        };
+        let allowed = |p: DVec2| needed < self.pixel_under(p);
         if allowed(moved) {
             return moved;
         }

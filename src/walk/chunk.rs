@@ -22,16 +22,43 @@ pub(crate) struct Chunk<S> {
     pub(crate) len: usize,
     pub(crate) x: [S; CHUNK],
     pub(crate) y: [S; CHUNK],
-    /// Which entries of the block they are.
-    pub(crate) entry: [u16; CHUNK],
+    /// Which entries of the block they are, if `packed`; otherwise `first` and those after it.
+    entry: [u16; CHUNK],
+    first: usize,
+    packed: bool,
     /// 1 for the points of the set, 0 for the others.
     pub(crate) keep: [u8; CHUNK],
+    /// The importance at each.
+    values: [f64; CHUNK],
 }
 
 impl<S: Scalar> Chunk<S> {
     pub(crate) fn new() -> Self {
         let zero = S::default();
-        Self { len: 0, x: [zero; CHUNK], y: [zero; CHUNK], entry: [0; CHUNK], keep: [0; CHUNK] }
+        Self {
+            len: 0,
+            x: [zero; CHUNK],
+            y: [zero; CHUNK],
+            entry: [0; CHUNK],
+            first: 0,
+            packed: false,
+            keep: [0; CHUNK],
+            values: [0.0; CHUNK],
+        }
+    }
+
+    /// Sets candidate `i`, a point, and with it all of the chunk to be packed.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, [x, y]: [S; 2], entry: usize) {
+        // A block has at most 37,829 entries.
+        (self.x[i], self.y[i], self.entry[i], self.keep[i]) = (x, y, entry as u16, 1);
+        self.packed = true;
+    }
+
+    /// The entry of the block that candidate `i` is.
+    #[inline(always)]
+    pub(crate) fn entry(&self, i: usize) -> usize {
+        if self.packed { self.entry[i].into() } else { self.first + i }
     }
 
     /// Takes the batch's entries from `start` on, as many as fit, and marks the points among them.
@@ -53,19 +80,18 @@ impl<S: Scalar> Chunk<S> {
             segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
             (self.len, next) = (filled.end, end);
         }
-        for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
-            // A block has at most 37,829 entries.
-            *entry = (start + i) as u16;
-        }
+        (self.first, self.packed) = (start, false);
         if batch.inside {
-            self.keep[..self.len].fill(1);
+            if batch.all_accepted {
+                self.keep[..self.len].fill(1);
+            }
         } else {
             self.mark_inside::<P>(sampling, clip, to_caller);
-        }
-        if !batch.all_accepted {
-            if !batch.inside {
+            if !batch.all_accepted {
                 self.pack();
             }
+        }
+        if !batch.all_accepted {
             self.mark_accepted(sampling, batch)?;
         }
         Ok(next)
@@ -97,13 +123,19 @@ impl<S: Scalar> Chunk<S> {
     /// Moves the marked candidates to the front, in order.
     #[inline(always)]
     pub(crate) fn pack(&mut self) {
+        if !self.packed {
+            for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
+                // A block has at most 37,829 entries.
+                *entry = (self.first + i) as u16;
+            }
+        }
         let mut kept = 0;
-        for i in 0..self.len {
+        for i in 0..self.len.min(CHUNK) {
             let (x, y, entry) = (self.x[i], self.y[i], self.entry[i]);
             (self.x[kept], self.y[kept], self.entry[kept]) = (x, y, entry);
-            kept += usize::from(self.keep[i] & 1);
+            kept += usize::from(self.keep[i]);
         }
-        self.len = kept;
+        (self.len, self.packed) = (kept, true);
     }
 
     /// Marks those whose importance reaches their rank.
@@ -115,8 +147,7 @@ impl<S: Scalar> Chunk<S> {
     ) -> Result<(), SamplingError> {
         let len = self.len;
         let corner = sampling.placement().domain().min();
-        let mut values = [0.0; CHUNK];
-        let values = &mut values[..len];
+        let values = &mut self.values[..len];
         sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
         // One comparison that is false for NaN, so that no broken promise passes.
         let sound = |value: f64| (value >= 0.0) & (value <= batch.bound);
@@ -133,8 +164,9 @@ impl<S: Scalar> Chunk<S> {
         let largest_term =
             batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));
         if largest_term >= EXACT {
-            for ((keep, entry), value) in self.keep.iter_mut().zip(&self.entry).zip(&*values) {
-                *keep = u8::from(scale.accepts(batch.rank(block, usize::from(*entry)), *value));
+            for i in 0..len {
+                let rank = batch.rank(block, self.entry(i));
+                self.keep[i] = u8::from(scale.accepts(rank, self.values[i]));
             }
             return Ok(());
         }
@@ -146,9 +178,8 @@ impl<S: Scalar> Chunk<S> {
             let rank = own + f64::from(a) * tiles - f64::from(b) * before;
             u8::from(rank < scale.limit_before_rounding(value))
         };
-        if batch.inside {
-            let first = usize::from(self.entry[0]);
-            let coefficients = block.rank_coefficients_of(first..first + len);
+        if !self.packed {
+            let coefficients = block.rank_coefficients_of(self.first..self.first + len);
             for ((keep, (a, b)), value) in self.keep.iter_mut().zip(coefficients).zip(&*values) {
                 *keep = accepted(a, b, *value);
             }

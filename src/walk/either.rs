@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::chunk::Chunk;
-use super::relaxed::{RelaxedBatch, RelaxedTraversal};
+use super::relaxed::RelaxedTraversal;
 use super::scalar::Position;
 use super::traverse::Traversal;
 use crate::clip::{Clip, ToCaller};
@@ -17,14 +17,8 @@ pub(crate) enum AnyTraversal {
     Relaxed(RelaxedTraversal),
 }
 
-/// A batch in the sampling's mode.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum AnyBatch {
-    Fixed(Batch),
-    Relaxed(RelaxedBatch),
-}
-
 impl AnyTraversal {
+    #[inline(always)]
     pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
         match sampling.relaxation() {
             None => Self::Fixed(Traversal::new(sampling, clip)),
@@ -32,45 +26,45 @@ impl AnyTraversal {
         }
     }
 
-    /// The next batch of candidates, or `None` at the end.
-    pub(crate) fn next_batch<I: Importance>(
+    /// Moves to the next batch of candidates; `false` at the end.
+    #[inline(always)]
+    pub(crate) fn advance<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
-    ) -> Result<Option<AnyBatch>, SamplingError> {
-        Ok(match (self, sampling.relaxation()) {
-            (Self::Relaxed(traversal), Some(relaxation)) => {
-                traversal.next_batch(sampling, relaxation)?.map(AnyBatch::Relaxed)
-            }
-            (Self::Relaxed(_), None) => None,
-            (Self::Fixed(traversal), _) => traversal.next_batch(sampling)?.map(AnyBatch::Fixed),
-        })
-    }
-}
-
-impl AnyBatch {
-    /// The candidates, fixed or not.
-    pub(crate) fn entries(&self) -> &Batch {
-        match self {
-            Self::Fixed(batch) | Self::Relaxed(RelaxedBatch { batch, .. }) => batch,
+    ) -> Result<bool, SamplingError> {
+        match (self, sampling.relaxation()) {
+            (Self::Fixed(traversal), _) => traversal.advance(sampling),
+            (Self::Relaxed(traversal), Some(relaxation)) => traversal.advance(sampling, relaxation),
+            (Self::Relaxed(_), None) => Ok(false),
         }
     }
 
-    /// Takes the entries from `start` on into `chunk`, as many as fit, and marks the points among
-    /// them. Returns the next entry.
+    /// The current batch of candidates.
+    #[inline(always)]
+    pub(crate) fn batch(&self) -> &Batch {
+        match self {
+            Self::Fixed(traversal) => traversal.batch(),
+            Self::Relaxed(traversal) => traversal.batch(),
+        }
+    }
+
+    /// Takes the batch's entries from `start` on into `chunk`, as many as fit, and marks the points
+    /// among them. Returns the next entry.
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position>(
         &self,
         sampling: &Sampling<'_, I>,
-        clip: &Clip,
         to_caller: &ToCaller<P::Scalar>,
         start: usize,
         chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
         match (self, sampling.relaxation()) {
-            (Self::Relaxed(batch), Some(relaxation)) => {
-                batch.select::<I, P>(sampling, relaxation, clip, to_caller, start, chunk)
+            (Self::Relaxed(traversal), Some(relaxation)) => {
+                traversal.select::<I, P>(sampling, relaxation, to_caller, start, chunk)
             }
-            (Self::Fixed(batch) | Self::Relaxed(RelaxedBatch { batch, .. }), _) => {
+            (Self::Relaxed(traversal), None) => Ok(traversal.batch().end),
+            (Self::Fixed(traversal), _) => {
+                let (clip, batch) = (traversal.clip(), traversal.batch());
                 chunk.select::<I, P>(sampling, clip, to_caller, batch, start)
             }
         }

@@ -61,15 +61,24 @@ impl Open {
 
         let corner = placement.domain().min();
         let radius = placement.reach(node.level + 1, levels - 1);
+        let mut digits = [0u8; MAX_CHILDREN];
+        let mut touching = 0;
+        for digit in 0..children {
+            (digits[touching], x[touching], y[touching]) = (digit as u8, x[digit], y[digit]);
+            let centre = corner + DVec2::new(x[touching], y[touching]);
+            let touches = node_inside || clip.touches(&Region { centre, radius });
+            touching += usize::from(touches);
+        }
+        let mut bounds = [0.0; MAX_CHILDREN];
+        let (x, y, bounds) = (&x[..touching], &y[..touching], &mut bounds[..touching]);
+        importance.upper_bounds(corner, x, y, radius, bounds);
+
         let (tiles, before) = tile_counts(node.level);
         let tiles_below = tiles_at(node.level + 1);
-        for digit in 0..children {
-            let region = Region { centre: corner + DVec2::new(x[digit], y[digit]), radius };
-            if !(node_inside || clip.touches(&region)) {
-                continue;
-            }
-            let bound = importance.upper_bound(&region);
-            let limit = sampling.rank_limit_of_bound(bound, &region)?;
+        for (i, bound) in bounds.iter().enumerate() {
+            let region = Region { centre: corner + DVec2::new(x[i], y[i]), radius };
+            let limit = sampling.rank_limit_of_bound(*bound, &region)?;
+            let digit = usize::from(digits[i]);
             let (a, b) = block.rank_coefficients(digit);
             let rank = node.rank + u64::from(a) * tiles - u64::from(b) * before;
             let bit = 1 << digit;
@@ -78,7 +87,7 @@ impl Open {
                 self.inside |= if node_inside || clip.holds(&region) { bit } else { 0 };
                 self.constant |= if importance.is_constant(&region) { bit } else { 0 };
             }
-            (self.limits[digit], self.bounds[digit]) = (limit, bound);
+            (self.limits[digit], self.bounds[digit]) = (limit, *bound);
         }
         Ok(())
     }

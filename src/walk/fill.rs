@@ -2,9 +2,10 @@
 //! test is needed.
 
 use super::chunk::Chunk;
-use super::either::{AnyBatch, AnyTraversal};
+use super::either::AnyTraversal;
 use super::frame::Segment;
 use super::scalar::{Position, Scalar};
+use super::vectors::Vectors;
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::points::Filled;
@@ -96,35 +97,56 @@ pub(crate) fn fill<I: Importance, O: Output>(
     clip: Clip,
     mut output: O,
 ) -> Result<Filled, SamplingError> {
-    let placement = sampling.placement();
-    let to_caller = ToCaller::new(&placement.domain())?;
+    let vectors = Vectors::detect();
+    let to_caller = ToCaller::new(&sampling.placement().domain())?;
     let mut traversal = AnyTraversal::new(sampling, clip);
     let mut chunk = Chunk::new();
     let mut written = 0;
-    while let Some(batch) = traversal.next_batch(sampling)? {
-        if let AnyBatch::Fixed(batch) = batch
-            && batch.inside
-            && batch.all_accepted
-            && batch.end - batch.start <= output.room() - written
-        {
-            let mut next = batch.start;
-            while next < batch.end {
-                let (segment, end) = batch.segment(placement, next, usize::MAX);
-                output.write(written, &segment, &to_caller);
-                written += end - next;
-                next = end;
-            }
-            continue;
-        }
-        let mut next = batch.entries().start;
-        while next < batch.entries().end {
-            next = batch.select::<I, O::Position>(sampling, &clip, &to_caller, next, &mut chunk)?;
-            if !append(&chunk, &mut output, &mut written, &to_caller) {
-                return Ok(Filled { written, complete: false });
-            }
+    while traversal.advance(sampling)? {
+        let state = (&traversal, &to_caller, &mut chunk, &mut output, &mut written);
+        let complete = vectors.run(
+            #[inline(always)]
+            || emit(sampling, state),
+        )?;
+        if !complete {
+            return Ok(Filled { written, complete });
         }
     }
     Ok(Filled { written, complete: true })
+}
+
+type Scalars<O> = <<O as Output>::Position as Position>::Scalar;
+
+/// Writes the points of the current batch; `false` if there was no room for all of them.
+#[inline(always)]
+fn emit<I: Importance, O: Output>(
+    sampling: &Sampling<'_, I>,
+    (traversal, to_caller, chunk, output, written): (
+        &AnyTraversal,
+        &ToCaller<Scalars<O>>,
+        &mut Chunk<Scalars<O>>,
+        &mut O,
+        &mut usize,
+    ),
+) -> Result<bool, SamplingError> {
+    let batch = traversal.batch();
+    let mut next = batch.start;
+    if batch.inside && batch.all_accepted && batch.end - next <= output.room() - *written {
+        while next < batch.end {
+            let (segment, end) = batch.segment(sampling.placement(), next, usize::MAX);
+            output.write(*written, &segment, to_caller);
+            *written += end - next;
+            next = end;
+        }
+        return Ok(true);
+    }
+    while next < batch.end {
+        next = traversal.select::<I, O::Position>(sampling, to_caller, next, chunk)?;
+        if !append(chunk, output, written, to_caller) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Appends the chunk's points; `false` if there was no room for all of them.

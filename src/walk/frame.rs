@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use glam::DVec2;
 
-use super::node::ExactPoint;
+use super::node::{ExactPoint, QUARTERS};
 use super::scalar::Scalar;
 use crate::tables::Offsets;
 
@@ -21,14 +21,14 @@ pub(crate) struct Frame<S> {
 
 impl<S: Scalar> Frame<S> {
     /// For exact points turned back by `quarters`·90°.
+    #[inline(always)]
     pub(crate) fn new(half_edge: DVec2, origin: DVec2, quarters: u8) -> Self {
-        let h = half_edge;
-        let (x, y) = match quarters % 4 {
-            0 => ([h.x, -h.y], [h.y, h.x]),
-            1 => ([-h.y, -h.x], [h.x, -h.y]),
-            2 => ([-h.x, h.y], [-h.y, -h.x]),
-            _ => ([h.y, h.x], [-h.x, h.y]),
-        };
+        let (cos, sin) = QUARTERS[usize::from(quarters % 4)];
+        let (cos, sin) = (f64::from(cos), f64::from(sin));
+        // One product is 0 and the other ± a component: exact.
+        let a = cos * half_edge.x - sin * half_edge.y;
+        let b = sin * half_edge.x + cos * half_edge.y;
+        let (x, y) = ([a, -b], [b, a]);
         Self {
             origin: origin.to_array().map(S::from_f64),
             x: x.map(S::from_f64),
@@ -57,6 +57,7 @@ pub(crate) struct Segment<'t, S> {
 
 impl<'t, S: Scalar> Segment<'t, S> {
     /// The run `range` of a block's offsets.
+    #[inline(always)]
     pub(crate) fn new(
         frame: Frame<S>,
         centre: ExactPoint,

@@ -11,3 +11,4 @@ pub(crate) mod node;
 pub(crate) mod relaxed;
 pub(crate) mod scalar;
 pub(crate) mod traverse;
+pub(crate) mod vectors;

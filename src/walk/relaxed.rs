@@ -39,13 +39,9 @@ pub(crate) struct RelaxedTraversal {
     waiting: usize,
     clip: Clip,
     tiles_left: u64,
-}
-
-/// A batch of the relaxed walk: a node's own centre is entry 0 of it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RelaxedBatch {
-    pub(crate) batch: Batch,
-    kin: Kin,
+    /// The tile being visited; its own centre is entry 0 of the batch.
+    kin: Option<Kin>,
+    batch: Batch,
 }
 
 /// The level L with N_{L−1} < T ≤ N_L, at least 1, and N_{L−1}.
@@ -58,8 +54,14 @@ fn level_of(threshold: f64) -> (u8, f64) {
 impl RelaxedTraversal {
     pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
         let placement = sampling.placement();
-        let mut traversal =
-            Self { stack: [None; STACK], waiting: 0, clip, tiles_left: sampling.limits().tiles };
+        let mut traversal = Self {
+            stack: [None; STACK],
+            waiting: 0,
+            clip,
+            tiles_left: sampling.limits().tiles,
+            kin: None,
+            batch: Batch::EMPTY,
+        };
         for node in placement.frontier().rev() {
             traversal.push(Kin::frontier(placement.tables(), node));
         }
@@ -79,12 +81,17 @@ impl RelaxedTraversal {
         self.stack[self.waiting]
     }
 
-    /// The next block with candidates, or `None` at the end.
-    pub(crate) fn next_batch<I: Importance>(
+    /// The current batch of candidates.
+    pub(crate) fn batch(&self) -> &Batch {
+        &self.batch
+    }
+
+    /// Moves to the next batch of candidates; `false` at the end.
+    pub(crate) fn advance<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
         relaxation: &RelaxationTable<'_>,
-    ) -> Result<Option<RelaxedBatch>, SamplingError> {
+    ) -> Result<bool, SamplingError> {
         let placement = sampling.placement();
         let domain = placement.domain();
         let tables = placement.tables();
@@ -119,17 +126,17 @@ impl RelaxedTraversal {
             }
             let (level, _) = level_of(sampling.scale().threshold(bound));
             let block = tables.block(node.kind);
-            let batch = |end, inside| RelaxedBatch {
-                batch: Batch { node, start: 0, end, inside, all_accepted: false, bound },
-                kin,
-            };
+            self.kin = Some(kin);
+            self.batch =
+                Batch { node, start: 0, end: 1, inside: false, all_accepted: false, bound };
             if !subtree_reaches {
-                return Ok(Some(batch(1, false)));
+                return Ok(true);
             }
             let levels = levels_below(&node, limit);
             if level <= node.level + 2 && levels <= usize::from(tables.depth()) {
-                let inside = self.clip.holds(&wide) && self.clip.holds(&own);
-                return Ok(Some(batch(count_below(&node, block, levels, limit), inside)));
+                self.batch.inside = self.clip.holds(&wide) && self.clip.holds(&own);
+                self.batch.end = count_below(&node, block, levels, limit);
+                return Ok(true);
             }
             let (tiles, before) = tile_counts(node.level);
             for digit in (0..tables.child_kinds(node.kind).len()).rev() {
@@ -138,18 +145,15 @@ impl RelaxedTraversal {
                 }
             }
         }
-        Ok(None)
+        Ok(false)
     }
-}
 
-impl RelaxedBatch {
     /// Fills `chunk` with the points among the entries from `start` on, where they are moved to, as
     /// many as fit. Returns the next entry.
     pub(crate) fn select<I: Importance, P: Position>(
         &self,
         sampling: &Sampling<'_, I>,
         relaxation: &RelaxationTable<'_>,
-        clip: &Clip,
         to_caller: &ToCaller<P::Scalar>,
         start: usize,
         chunk: &mut Chunk<P::Scalar>,
@@ -158,7 +162,8 @@ impl RelaxedBatch {
         let domain = placement.domain();
         // Where a border point that moves in finds its importance.
         let (low, high) = (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)));
-        let next = self.fill_chunk(placement, start, chunk);
+        let Some(kin) = &self.kin else { return Ok(self.batch.end) };
+        let next = self.fill_chunk(kin, placement, start, chunk);
         let mut kept = 0;
         for k in 0..chunk.len {
             let (x, y, entry) = (chunk.x[k], chunk.y[k], start + k);
@@ -172,7 +177,7 @@ impl RelaxedBatch {
             if !sampling.scale().accepts(rank, value) {
                 continue;
             }
-            let [dx, dy] = self.step::<P::Scalar, I>(sampling, relaxation, entry, at, value);
+            let [dx, dy] = self.step::<P::Scalar, I>(kin, sampling, relaxation, entry, at, value);
             let (moved_x, moved_y) = (x + dx, y + dy);
             let moved = domain.min() + DVec2::new(moved_x.to_f64(), moved_y.to_f64());
             let needed = sampling.scale().importance_of(rank);
@@ -182,13 +187,12 @@ impl RelaxedBatch {
             } else {
                 (settled - domain.min()).to_array().map(P::Scalar::from_f64)
             };
-            (chunk.x[kept], chunk.y[kept], chunk.entry[kept]) = (moved_x, moved_y, entry as u16);
-            chunk.keep[kept] = 1;
+            chunk.set(kept, [moved_x, moved_y], entry);
             kept += 1;
         }
         chunk.len = kept;
         if !self.batch.inside {
-            chunk.mark_inside::<P>(sampling, clip, to_caller);
+            chunk.mark_inside::<P>(sampling, &self.clip, to_caller);
         }
         Ok(next)
     }
@@ -196,6 +200,7 @@ impl RelaxedBatch {
     /// The fixed centres of the entries from `start` on, as many as fit. Returns the next entry.
     fn fill_chunk<S: Scalar>(
         &self,
+        kin: &Kin,
         placement: &Placement<'_>,
         start: usize,
         chunk: &mut Chunk<S>,
@@ -203,7 +208,7 @@ impl RelaxedBatch {
         chunk.len = 0;
         let mut next = start;
         if start == 0 {
-            [chunk.x[0], chunk.y[0]] = self.kin.own_centre(placement);
+            [chunk.x[0], chunk.y[0]] = kin.own_centre(placement);
             (chunk.len, next) = (1, 1);
         }
         while chunk.len < CHUNK && next < self.batch.end {
@@ -218,6 +223,7 @@ impl RelaxedBatch {
     /// How far candidate `i`, accepted at `at` where the importance is `value`, is moved.
     fn step<S: Scalar, I: Importance>(
         &self,
+        kin: &Kin,
         sampling: &Sampling<'_, I>,
         relaxation: &RelaxationTable<'_>,
         i: usize,
@@ -236,11 +242,11 @@ impl RelaxedBatch {
         let detail = if relaxation.has_rough() { importance.detail(at) } else { 0.0 };
         let tables = placement.tables();
         let (vector, rotation) = if i == 0 {
-            let Relation { class, rotation } = self.kin.of_own_centre(tables, level);
+            let Relation { class, rotation } = kin.of_own_centre(tables, level);
             (relaxation.vector(class, phase, detail), rotation)
         } else {
             let coefficients = tables.block(self.batch.node.kind).rank_coefficients(i);
-            let Relation { class, rotation } = self.kin.of_entry(coefficients, level);
+            let Relation { class, rotation } = kin.of_entry(coefficients, level);
             (relaxation.vector(class, phase, detail), rotation)
         };
         let [vx, vy] = vector.map(S::from_f64);
