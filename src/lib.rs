@@ -10,6 +10,8 @@ pub mod importance;
 #[cfg(test)]
 mod oracle;
 pub mod paper;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod placement;
 mod points;
 mod sampling;
@@ -20,10 +22,12 @@ mod walk;
 
 pub use domain::{Domain, DomainError, Region};
 pub use importance::{
-    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView,
+    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Probed,
 };
+#[cfg(feature = "parallel")]
+pub use parallel::Shards;
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
 pub use sampling::{Amount, Limits, Sampling, SamplingError};
 pub use tables::{BlockTable, Tables, TablesError};
-pub use walk::scalar::{Position, Scalar};
+pub use walk::scalar::{Coordinate, Position, Scalar};

@@ -166,6 +166,7 @@ impl<'t> Placement<'t> {
     }
 
     /// The tiles at which walks start.
+    #[cfg(test)]
     pub(crate) fn frontier(&self) -> impl Iterator<Item = &Node> {
         self.frontier.iter().flatten()
     }
@@ -205,11 +206,6 @@ impl<'t> Placement<'t> {
     /// that are born at most `levels` levels below it, as computed in either precision.
     pub(crate) fn reach(&self, level: u8, levels: usize) -> f64 {
         self.reach[usize::from(level)] * WITHIN[levels.min(WITHIN.len() - 1)] + self.slack
-    }
-
-    /// The most by which a computed position is off, in units.
-    pub(crate) fn slack(&self) -> f64 {
-        self.slack
     }
 }
 

@@ -5,10 +5,10 @@ use core::fmt;
 
 use glam::DVec2;
 
-use super::{Importance, pixels};
 use super::lookup::Lattice;
 use super::pyramid::MaxPyramid;
 use super::view::PixelView;
+use super::{Importance, pixels};
 use crate::domain::{Domain, Region};
 use crate::walk::scalar::Scalar;
 use crate::walk::vectors::Vectors;
@@ -115,8 +115,11 @@ impl ImageMap {
         }
         let size = DVec2::new(width as f64, height as f64);
         for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
-            pixels::admit(row, invalid)
-                .map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
+            pixels::admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel {
+                x,
+                y,
+                value,
+            })?;
         }
         let row_sums: Vec<f64> = pixels.chunks_exact(width).map(pixels::sum).collect();
         let sum = pixels::sum(&row_sums);

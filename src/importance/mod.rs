@@ -9,12 +9,14 @@ mod function;
 mod lookup;
 mod map;
 mod pixels;
+mod probed;
 mod pyramid;
 mod view;
 
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
+pub use probed::Probed;
 pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
@@ -62,6 +64,12 @@ pub trait Importance {
         None
     }
 
+    /// Whether [`upper_bound`](Self::upper_bound) is a promise, as it must be unless the importance says
+    /// otherwise: then a value above it is an error. Without a promise, points can be missing.
+    fn bounds_hold(&self) -> bool {
+        true
+    }
+
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
     /// test of their own.
     fn is_constant(&self, region: &Region) -> bool {
@@ -85,6 +93,10 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
         (**self).integral(domain)
+    }
+
+    fn bounds_hold(&self) -> bool {
+        (**self).bounds_hold()
     }
 
     fn is_constant(&self, region: &Region) -> bool {

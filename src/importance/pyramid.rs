@@ -118,8 +118,7 @@ mod tests {
     #[test]
     fn every_texel_is_the_largest_of_its_pixels() {
         for (width, height) in [(1, 1), (1, 9), (17, 1), (2, 2), (7, 5), (33, 64)] {
-            let pixels: Vec<f32> =
-                (0..width * height).map(|i| (i * 7919 % 1009) as f32).collect();
+            let pixels: Vec<f32> = (0..width * height).map(|i| (i * 7919 % 1009) as f32).collect();
             let pyramid = MaxPyramid::new(&pixels, width, height);
             for shift in 0..8 {
                 let shift = shift.min(pyramid.levels.len());

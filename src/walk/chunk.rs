@@ -67,8 +67,7 @@ impl<S: Scalar> Chunk<S> {
         let mut next = start;
         self.len = 0;
         while self.len < CHUNK && next < batch.end {
-            let (segment, end) =
-                batch.segment::<S>(sampling.placement(), next, CHUNK - self.len);
+            let (segment, end) = batch.segment::<S>(sampling.placement(), next, CHUNK - self.len);
             let filled = self.len..self.len + (end - next);
             segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
             (self.len, next) = (filled.end, end);
@@ -143,18 +142,20 @@ impl<S: Scalar> Chunk<S> {
         let values = &mut self.values[..len];
         sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
         // One comparison that is false for NaN, so that no broken promise passes.
-        let sound = |value: f64| (value >= 0.0) & (value <= batch.bound);
+        let most = if sampling.importance().bounds_hold() { batch.bound } else { f64::MAX };
+        let sound = |value: f64| (value >= 0.0) & (value <= most);
         if !values.iter().fold(true, |all, value| all & sound(*value)) {
             let i = values.iter().position(|value| !sound(*value)).unwrap_or(0);
             let at = corner + DVec2::new(self.x[i].to_f64(), self.y[i].to_f64());
-            return Err(SamplingError::InvalidValue { at, value: values[i], bound: batch.bound });
+            return Err(SamplingError::InvalidValue { at, value: values[i], bound: most });
         }
 
         let block = batch.block(sampling.placement());
         let scale = sampling.scale();
         let (tiles, before) = tile_counts(batch.node.level);
         let (greatest, _) = block.rank_coefficients(batch.end - 1);
-        let largest_term = batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));
+        let largest_term =
+            batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));
         if largest_term >= EXACT {
             for i in 0..len {
                 let rank = batch.rank(block, self.entry(i));

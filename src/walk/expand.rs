@@ -94,10 +94,7 @@ impl Open {
 }
 
 /// The centres of a node's children, by digit, relative to the domain's least corner.
-fn child_centres<'t, I: Importance>(
-    sampling: &Sampling<'t, I>,
-    node: &Node,
-) -> Segment<'t, f64> {
+fn child_centres<'t, I: Importance>(sampling: &Sampling<'t, I>, node: &Node) -> Segment<'t, f64> {
     let placement = sampling.placement();
     let quarters = node.rotation / 3;
     let centre: ExactPoint = node.centre.finer();

@@ -6,7 +6,7 @@ use super::frame::Segment;
 use super::scalar::{Position, Scalar};
 use super::traverse::Traversal;
 use super::vectors::Vectors;
-use crate::clip::{Clip, ToCaller};
+use crate::clip::ToCaller;
 use crate::importance::Importance;
 use crate::points::Filled;
 use crate::sampling::{Sampling, SamplingError};
@@ -40,7 +40,12 @@ impl<P: Position> Output for &mut [P] {
     }
 
     #[inline(always)]
-    fn write(&mut self, i: usize, segment: &Segment<'_, P::Scalar>, to_caller: &ToCaller<P::Scalar>) {
+    fn write(
+        &mut self,
+        i: usize,
+        segment: &Segment<'_, P::Scalar>,
+        to_caller: &ToCaller<P::Scalar>,
+    ) {
         let slots = &mut self[i..i + segment.len()];
         if to_caller.is_identity() {
             segment.write_positions(slots, P::from_xy);
@@ -69,7 +74,12 @@ impl<P: Position> Output for Columns<'_, P> {
     }
 
     #[inline(always)]
-    fn write(&mut self, i: usize, segment: &Segment<'_, P::Scalar>, to_caller: &ToCaller<P::Scalar>) {
+    fn write(
+        &mut self,
+        i: usize,
+        segment: &Segment<'_, P::Scalar>,
+        to_caller: &ToCaller<P::Scalar>,
+    ) {
         let run = i..i + segment.len();
         let (x, y) = (&mut self.x[run.clone()], &mut self.y[run]);
         segment.write_columns(x, y);
@@ -84,12 +94,11 @@ impl<P: Position> Output for Columns<'_, P> {
 /// Writes the sampling's points to `output` until either ends.
 pub(crate) fn fill<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
-    clip: Clip,
     mut output: O,
 ) -> Result<Filled, SamplingError> {
     let vectors = Vectors::detect();
     let to_caller = ToCaller::new(&sampling.placement().domain())?;
-    let mut traversal = Traversal::new(sampling, clip);
+    let mut traversal = Traversal::new(sampling);
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {

@@ -7,5 +7,6 @@ pub(crate) mod fill;
 pub(crate) mod frame;
 pub(crate) mod node;
 pub(crate) mod scalar;
+pub(crate) mod share;
 pub(crate) mod traverse;
 pub(crate) mod vectors;
