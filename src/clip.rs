@@ -39,6 +39,12 @@ impl Clip {
         }
     }
 
+    /// The area of the part.
+    pub(crate) fn area(&self) -> f64 {
+        let size = (self.max - self.min).max(DVec2::ZERO);
+        size.x * size.y
+    }
+
     /// The rectangle to which points are clipped, if they are.
     pub(crate) fn rectangle(&self) -> Option<&Domain> {
         self.rectangle.as_ref()
@@ -47,7 +53,8 @@ impl Clip {
     /// Whether the disc may hold a point of the clip.
     #[inline(always)]
     pub(crate) fn touches(&self, region: &Region) -> bool {
-        let nearest = region.centre.max(self.min).min(self.max);
+        // Corner by corner, for a clip outside the domain, whose corners are the wrong way round.
+        let nearest = region.centre.min(self.max).max(self.min);
         nearest.distance_squared(region.centre) <= region.radius * region.radius
     }
 

@@ -58,6 +58,8 @@ pub mod measure;
 #[cfg(test)]
 mod oracle;
 pub mod paper;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod placement;
 mod points;
 #[cfg(feature = "train")]
@@ -72,11 +74,13 @@ mod walk;
 pub use domain::{Domain, DomainError, Region};
 pub use importance::{
     Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView,
-    StippleMap,
+    Probed, StippleMap,
 };
+#[cfg(feature = "parallel")]
+pub use parallel::Shards;
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
 pub use relaxed::RelaxationTable;
 pub use sampling::{Amount, Limits, Sampling, SamplingError};
 pub use tables::{BlockTable, Tables, TablesError};
-pub use walk::scalar::{Position, Scalar};
+pub use walk::scalar::{Coordinate, Position, Scalar};

@@ -220,11 +220,6 @@ impl<'t> Placement<'t> {
     pub(crate) fn reach(&self, level: u8, levels: usize) -> f64 {
         self.reach[usize::from(level)] * WITHIN[levels.min(WITHIN.len() - 1)] + self.slack
     }
-
-    /// The most by which a computed position is off, in units.
-    pub(crate) fn slack(&self) -> f64 {
-        self.slack
-    }
 }
 
 /// λ^n = a + b√3 with integers a, b: the sum of two positive terms, accurate to an ulp.

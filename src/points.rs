@@ -1,6 +1,6 @@
 //! Points: the iterator on which the other ways to receive points are built.
 
-use crate::clip::{Clip, ToCaller};
+use crate::clip::ToCaller;
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
 use crate::walk::chunk::Chunk;
@@ -44,10 +44,10 @@ pub struct Points<'a, I, P: Position> {
 }
 
 impl<'a, I: Importance, P: Position> Points<'a, I, P> {
-    pub(crate) fn new(sampling: Sampling<'a, I>, clip: Clip) -> Result<Self, SamplingError> {
+    pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
         Ok(Self {
             to_caller: ToCaller::new(&sampling.placement().domain())?,
-            traversal: AnyTraversal::new(&sampling, clip),
+            traversal: AnyTraversal::new(&sampling),
             sampling,
             entry: 0,
             chunk: Chunk::new(),

@@ -6,13 +6,16 @@ use core::ops::ControlFlow;
 use glam::DVec2;
 
 use crate::clip::Clip;
-use crate::domain::Region;
+use crate::domain::{Domain, Region};
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::points::{Filled, Points, Sample};
 use crate::relaxed::RelaxationTable;
 use crate::tiling::{MAX_LEVEL, TileCounts};
-use crate::walk::{self, scalar::Position};
+use crate::walk;
+use crate::walk::either::AnyTraversal;
+use crate::walk::scalar::{Coordinate, Position};
+use crate::walk::share::Share;
 
 /// How many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +94,13 @@ pub enum SamplingError {
     },
     /// The placement's tables have no relaxed offsets.
     NoRelaxation,
+    /// There is no such part.
+    Shard {
+        /// Which part.
+        index: usize,
+        /// Of how many.
+        of: usize,
+    },
     /// No number of the position type lies in the domain: it is too small, too far from the origin.
     Precision,
 }
@@ -121,6 +131,7 @@ impl fmt::Display for SamplingError {
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
             Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
+            Self::Shard { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
             Self::Precision => {
                 f.write_str("no number of this precision lies in the domain; use DVec2")
             }
@@ -143,6 +154,8 @@ pub struct Sampling<'a, I> {
     expected: Option<f64>,
     limits: Limits,
     relaxed: bool,
+    clip: Clip,
+    share: Option<Share>,
 }
 
 // Derived, these would ask the importance itself to be `Copy`.
@@ -202,6 +215,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
             expected,
             limits,
             relaxed: false,
+            clip: Clip::domain(&domain),
+            share: None,
         };
         let region = domain.region();
         let bound = importance.upper_bound(&region);
@@ -237,6 +252,63 @@ impl<'a, I: Importance> Sampling<'a, I> {
         if self.relaxed { self.placement.tables().relaxation() } else { None }
     }
 
+    /// The points of this set that lie in a half-open rectangle of the caller's coordinates: exactly
+    /// those, at a cost in proportion to their number and the rectangle's border. Clipping again
+    /// replaces the rectangle. Parts of a walk ([`shard`](Self::shard)) are taken after clipping.
+    #[must_use]
+    pub fn clipped(self, rectangle: Domain) -> Self {
+        let clip = Clip::rectangle_of(&self.placement.domain(), rectangle);
+        Self { clip, share: None, ..self }
+    }
+
+    /// Part `index` (from 0) of `of` parts of about equal work. The points of all parts, one part
+    /// after the other, are those of the whole in the same order; each point is in one part.
+    ///
+    /// Costs a walk over some fifty tiles a part, which every part's own walk repeats.
+    ///
+    /// # Errors
+    /// [`SamplingError::Shard`] unless `index` < `of`; otherwise as [`visit`](Self::visit).
+    pub fn shard(self, index: usize, of: usize) -> Result<Self, SamplingError> {
+        if index >= of {
+            return Err(SamplingError::Shard { index, of });
+        }
+        let (grain, total) = self.measure(of)?;
+        Ok(self.part(grain, total, index, of))
+    }
+
+    /// The grain for so many parts, and the work of all pieces.
+    pub(crate) fn measure(&self, parts: usize) -> Result<(u64, u64), SamplingError> {
+        let domain = self.placement.domain();
+        let expected = match self.expected {
+            Some(expected) => expected,
+            None => {
+                let bound = self.importance.upper_bound(&domain.region());
+                bound * self.density() * domain.area()
+            }
+        };
+        let share = expected * self.clip.area() / domain.area() / (32.0 * parts as f64);
+        let grain = (share as u64).max(256);
+        let measuring = Self { share: Some(Share::nothing(grain)), ..*self };
+        let mut traversal = AnyTraversal::new(&measuring);
+        while traversal.advance(&measuring)? {}
+        Ok((grain, traversal.passed()))
+    }
+
+    /// A part of the pieces that [`measure`](Self::measure) has measured.
+    pub(crate) fn part(self, grain: u64, total: u64, index: usize, of: usize) -> Self {
+        Self { share: Some(Share::part(grain, total, index, of)), ..self }
+    }
+
+    /// The part of the plane from which points are taken.
+    pub(crate) fn clip(&self) -> Clip {
+        self.clip
+    }
+
+    /// The part of the walk that is taken.
+    pub(crate) fn share(&self) -> Option<Share> {
+        self.share
+    }
+
     /// The placement.
     #[must_use]
     pub fn placement(&self) -> &'a Placement<'a> {
@@ -255,7 +327,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
         self.limits
     }
 
-    /// The number of points expected over all seeds, if the importance knows its integral.
+    /// The number of points expected over all seeds, if the importance knows its integral. Of the
+    /// whole set: clipping and sharing do not change it.
     #[must_use]
     pub fn expected_points(&self) -> Option<f64> {
         self.expected
@@ -317,16 +390,29 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// # Errors
     /// As [`visit`](Self::visit); the buffer then holds some of the points.
     pub fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
-        let clip = Clip::domain(&self.placement.domain());
-        walk::fill::fill(self, clip, buffer)
+        walk::fill::fill(self, buffer)
     }
 
-    /// An iterator over the points. It holds its state (some 20 KiB) itself and allocates nothing.
+    /// The same with one buffer a coordinate; the shorter one's length counts.
+    ///
+    /// # Errors
+    /// As [`fill`](Self::fill).
+    pub fn fill_columns<S: Coordinate>(
+        &self,
+        x: &mut [S],
+        y: &mut [S],
+    ) -> Result<Filled, SamplingError> {
+        let length = x.len().min(y.len());
+        let (x, y) = (&mut x[..length], &mut y[..length]);
+        walk::fill::fill(self, walk::fill::Columns::<S::Position> { x, y })
+    }
+
+    /// An iterator over the points. It holds its state (some 10 KiB) itself and allocates nothing.
     ///
     /// # Errors
     /// [`SamplingError::Precision`] if the position type cannot represent any point of the domain.
     pub fn points<P: Position>(&self) -> Result<Points<'a, I, P>, SamplingError> {
-        Points::new(*self, Clip::domain(&self.placement.domain()))
+        Points::new(*self)
     }
 }
 

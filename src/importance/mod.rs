@@ -9,6 +9,7 @@ mod function;
 mod lookup;
 mod map;
 mod pixels;
+mod probed;
 mod pyramid;
 mod stipple;
 mod view;
@@ -16,6 +17,7 @@ mod view;
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
+pub use probed::Probed;
 pub use stipple::StippleMap;
 pub use view::{PixelData, PixelView};
 
@@ -92,6 +94,12 @@ pub trait Importance {
         0.0
     }
 
+    /// Whether [`upper_bound`](Self::upper_bound) is a promise, as it must be unless the importance says
+    /// otherwise: then a value above it is an error. Without a promise, points can be missing.
+    fn bounds_hold(&self) -> bool {
+        true
+    }
+
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
     /// test of their own.
     fn is_constant(&self, region: &Region) -> bool {
@@ -131,6 +139,10 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn longest_settling(&self) -> f64 {
         (**self).longest_settling()
+    }
+
+    fn bounds_hold(&self) -> bool {
+        (**self).bounds_hold()
     }
 
     fn is_constant(&self, region: &Region) -> bool {

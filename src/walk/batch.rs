@@ -71,6 +71,12 @@ pub(crate) fn levels_below(node: &Node, limit: u64) -> usize {
     if near < 4 { near } else { counts.iter().filter(|tiles| more(tiles)).count() }
 }
 
+/// About how many candidates a subtree has: a tile has one descendant in each N_m ranks.
+pub(crate) fn work_below(node: &Node, limit: u64) -> u64 {
+    let ranks = limit.saturating_sub(node.rank) as i64 as f64;
+    (ranks * RECIPROCALS[usize::from(node.level)]) as i64 as u64 + 1
+}
+
 /// A number of entries, born at most `levels` levels down, after which none has a rank below `limit`:
 /// [`count_below`] or a few more.
 ///

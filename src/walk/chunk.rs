@@ -150,11 +150,12 @@ impl<S: Scalar> Chunk<S> {
         let values = &mut self.values[..len];
         sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
         // One comparison that is false for NaN, so that no broken promise passes.
-        let sound = |value: f64| (value >= 0.0) & (value <= batch.bound);
+        let most = if sampling.importance().bounds_hold() { batch.bound } else { f64::MAX };
+        let sound = |value: f64| (value >= 0.0) & (value <= most);
         if !values.iter().fold(true, |all, value| all & sound(*value)) {
             let i = values.iter().position(|value| !sound(*value)).unwrap_or(0);
             let at = corner + DVec2::new(self.x[i].to_f64(), self.y[i].to_f64());
-            return Err(SamplingError::InvalidValue { at, value: values[i], bound: batch.bound });
+            return Err(SamplingError::InvalidValue { at, value: values[i], bound: most });
         }
 
         let block = batch.block(sampling.placement());

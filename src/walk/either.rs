@@ -5,7 +5,7 @@ use super::chunk::Chunk;
 use super::relaxed::RelaxedTraversal;
 use super::scalar::Position;
 use super::traverse::Traversal;
-use crate::clip::{Clip, ToCaller};
+use crate::clip::ToCaller;
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
 
@@ -19,10 +19,10 @@ pub(crate) enum AnyTraversal {
 
 impl AnyTraversal {
     #[inline(always)]
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
         match sampling.relaxation() {
-            None => Self::Fixed(Traversal::new(sampling, clip)),
-            Some(_) => Self::Relaxed(RelaxedTraversal::new(sampling, clip)),
+            None => Self::Fixed(Traversal::new(sampling)),
+            Some(_) => Self::Relaxed(RelaxedTraversal::new(sampling)),
         }
     }
 
@@ -36,6 +36,14 @@ impl AnyTraversal {
             (Self::Fixed(traversal), _) => traversal.advance(sampling),
             (Self::Relaxed(traversal), Some(relaxation)) => traversal.advance(sampling, relaxation),
             (Self::Relaxed(_), None) => Ok(false),
+        }
+    }
+
+    /// The work that a walk by parts has passed.
+    pub(crate) fn passed(&self) -> u64 {
+        match self {
+            Self::Fixed(traversal) => traversal.passed(),
+            Self::Relaxed(traversal) => traversal.passed(),
         }
     }
 

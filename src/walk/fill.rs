@@ -6,7 +6,7 @@ use super::either::AnyTraversal;
 use super::frame::Segment;
 use super::scalar::{Position, Scalar};
 use super::vectors::Vectors;
-use crate::clip::{Clip, ToCaller};
+use crate::clip::ToCaller;
 use crate::importance::Importance;
 use crate::points::Filled;
 use crate::sampling::{Sampling, SamplingError};
@@ -94,12 +94,11 @@ impl<P: Position> Output for Columns<'_, P> {
 /// Writes the sampling's points to `output` until either ends.
 pub(crate) fn fill<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
-    clip: Clip,
     mut output: O,
 ) -> Result<Filled, SamplingError> {
     let vectors = Vectors::detect();
     let to_caller = ToCaller::new(&sampling.placement().domain())?;
-    let mut traversal = AnyTraversal::new(sampling, clip);
+    let mut traversal = AnyTraversal::new(sampling);
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {

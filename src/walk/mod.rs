@@ -10,5 +10,6 @@ pub(crate) mod kin;
 pub(crate) mod node;
 pub(crate) mod relaxed;
 pub(crate) mod scalar;
+pub(crate) mod share;
 pub(crate) mod traverse;
 pub(crate) mod vectors;

@@ -9,10 +9,11 @@
 
 use glam::DVec2;
 
-use super::batch::{Batch, count_below, levels_below, tile_counts};
+use super::batch::{Batch, count_below, levels_below, tile_counts, work_below};
 use super::chunk::{CHUNK, Chunk};
 use super::kin::{Kin, Relation};
 use super::scalar::{Position, Scalar};
+use super::share::Share;
 use crate::clip::{Clip, ToCaller};
 use crate::domain::Region;
 use crate::importance::Importance;
@@ -38,6 +39,8 @@ pub(crate) struct RelaxedTraversal {
     stack: [Option<Kin>; STACK],
     waiting: usize,
     clip: Clip,
+    /// The part of the walk that is taken; `None` for all of it.
+    share: Option<Share>,
     tiles_left: u64,
     /// The tile being visited; its own centre is entry 0 of the batch.
     kin: Option<Kin>,
@@ -52,12 +55,13 @@ fn level_of(threshold: f64) -> (u8, f64) {
 }
 
 impl RelaxedTraversal {
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
         let placement = sampling.placement();
         let mut traversal = Self {
             stack: [None; STACK],
             waiting: 0,
-            clip,
+            clip: sampling.clip(),
+            share: sampling.share(),
             tiles_left: sampling.limits().tiles,
             kin: None,
             batch: Batch::EMPTY,
@@ -79,6 +83,11 @@ impl RelaxedTraversal {
     fn pop(&mut self) -> Option<Kin> {
         self.waiting = self.waiting.checked_sub(1)?;
         self.stack[self.waiting]
+    }
+
+    /// The work that a walk by parts has passed.
+    pub(crate) fn passed(&self) -> u64 {
+        self.share.map_or(0, |share| share.passed())
     }
 
     /// The current batch of candidates.
@@ -110,7 +119,8 @@ impl RelaxedTraversal {
                     + sampling.importance().longest_settling()
             };
             let wide = Region { radius: region.radius + step(node.level + 1), ..region };
-            let own = Region { radius: placement.slack() + step(kin.born()), ..region };
+            let own =
+                Region { radius: placement.reach(node.level, 0) + step(kin.born()), ..region };
             let subtree_reaches = self.clip.touches(&wide);
             if !subtree_reaches && !self.clip.touches(&own) {
                 continue;
@@ -129,14 +139,35 @@ impl RelaxedTraversal {
             self.kin = Some(kin);
             self.batch =
                 Batch { node, start: 0, end: 1, inside: false, all_accepted: false, bound };
+            // Tiles that wait below this one on the stack tell a piece's depth: all of its own
+            // descendants are stacked above them.
+            let depth = self.waiting;
+            let mut share = self.share.as_mut().filter(|share| !share.is_in_piece(depth + 1));
             if !subtree_reaches {
-                return Ok(true);
+                if share.is_none_or(|share| share.take(1, depth)) {
+                    return Ok(true);
+                }
+                continue;
+            }
+            if let Some(part) = &mut share {
+                part.leave_piece();
+                let work = work_below(&node, limit);
+                if part.is_piece(work) {
+                    if !part.take(work, depth) {
+                        continue;
+                    }
+                    share = None;
+                }
             }
             let levels = levels_below(&node, limit);
             if level <= node.level + 2 && levels <= usize::from(tables.depth()) {
                 self.batch.inside = self.clip.holds(&wide) && self.clip.holds(&own);
                 self.batch.end = count_below(&node, block, levels, limit);
-                return Ok(true);
+                let work = self.batch.end as u64;
+                if share.is_none_or(|share| share.take(work, depth)) {
+                    return Ok(true);
+                }
+                continue;
             }
             let (tiles, before) = tile_counts(node.level);
             for digit in (0..tables.child_kinds(node.kind).len()).rev() {

@@ -92,6 +92,20 @@ impl Position for DVec2 {
     }
 }
 
+/// A coordinate type with the position type it makes: `f32` with [`Vec2`], `f64` with [`DVec2`].
+pub trait Coordinate: Scalar {
+    /// The position type.
+    type Position: Position<Scalar = Self>;
+}
+
+impl Coordinate for f32 {
+    type Position = Vec2;
+}
+
+impl Coordinate for f64 {
+    type Position = DVec2;
+}
+
 mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}

@@ -5,9 +5,12 @@
 //! whose bound in rank units is at most N_m + r needs no visit. This is sharper than the paper's κ
 //! (its equation 8) and takes no logarithm.
 
-use super::batch::{Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at};
+use super::batch::{
+    Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at, work_below,
+};
 use super::expand::Open;
 use super::node::Node;
+use super::share::Share;
 use crate::clip::Clip;
 use crate::domain::Region;
 use crate::importance::Importance;
@@ -35,18 +38,21 @@ pub(crate) struct Traversal {
     /// Twice the number of frontier tiles begun, less one if only its centre was.
     frontier: usize,
     clip: Clip,
+    /// The part of the walk that is taken; `None` for all of it.
+    share: Option<Share>,
     tiles_left: u64,
     /// The tile being visited and its candidates, built in place.
     batch: Batch,
 }
 
 impl Traversal {
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, clip: Clip) -> Self {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
         Self {
             open: [Open::CLOSED; OPEN],
             depth: 0,
             frontier: 0,
-            clip,
+            clip: sampling.clip(),
+            share: sampling.share(),
             tiles_left: sampling.limits().tiles,
             batch: Batch::EMPTY,
         }
@@ -62,6 +68,11 @@ impl Traversal {
     #[inline(always)]
     pub(crate) fn batch(&self) -> &Batch {
         &self.batch
+    }
+
+    /// The work that a walk by parts has passed.
+    pub(crate) fn passed(&self) -> u64 {
+        self.share.map_or(0, |share| share.passed())
     }
 
     /// Moves to the next batch of candidates; `false` at the end.
@@ -80,7 +91,10 @@ impl Traversal {
                 let Some(limit) = self.enter_frontier(sampling, node)? else { continue };
                 if self.frontier % 2 == 1 {
                     (self.batch.start, self.batch.end) = (0, 1);
-                    return Ok(true);
+                    if self.share.as_mut().is_none_or(|share| share.take(1, 0)) {
+                        return Ok(true);
+                    }
+                    continue;
                 }
                 limit
             };
@@ -146,6 +160,7 @@ impl Traversal {
             .checked_sub(1)
             .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
         self.batch.start = 1;
+        let mut share = self.share.as_mut().filter(|share| !share.is_in_piece(self.depth));
         let Batch { node, inside, all_accepted: constant, .. } = &self.batch;
         if limit <= tiles_at(node.level).saturating_add(node.rank) {
             return Ok(false);
@@ -153,6 +168,15 @@ impl Traversal {
         let tables = sampling.placement().tables();
         let block = tables.block(node.kind);
         let levels = levels_below(node, limit);
+        if let Some(part) = &mut share {
+            let work = work_below(node, limit);
+            if part.is_piece(work) {
+                if !part.take(work, self.depth) {
+                    return Ok(false);
+                }
+                share = None;
+            }
+        }
         if levels <= usize::from(tables.depth()) {
             let end = if *constant {
                 count_below(node, block, levels, limit)
@@ -165,16 +189,19 @@ impl Traversal {
                 (false, true) => FEW,
             };
             if levels == 1 || end <= few {
+                let taken = share.is_none_or(|share| share.take(end as u64, self.depth));
                 self.batch.end = end;
-                return Ok(true);
+                return Ok(taken);
             }
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
         open.expand(sampling, &self.clip, node, levels, *inside)?;
-        self.depth += 1;
         // Deeper levels are wanted, so that all children's centres are.
-        self.batch.end = block.born_before(2);
-        Ok(true)
+        let end = block.born_before(2);
+        let taken = share.is_none_or(|share| share.take(end as u64, self.depth + 1));
+        self.depth += 1;
+        self.batch.end = end;
+        Ok(taken)
     }
 }

@@ -1,0 +1,236 @@
+//! What may change when a point is emitted, never whether or where: order of the walk, baked depth,
+//! clip, shards, threads, precision, buffers.
+
+use std::ops::ControlFlow;
+
+use glam::{DVec2, Vec2};
+use proptest::prelude::*;
+use twelvefold::{
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Position,
+    Probed, Sample, Sampling, SamplingError, Scalar, Tables, bake,
+};
+
+/// Rank and the bits of the coordinates.
+type Bits = (u64, u64, u64);
+
+fn bits<P: Position>(sample: &Sample<P>) -> Bits {
+    let [x, y] = sample.position.xy();
+    (sample.rank, x.to_f64().to_bits(), y.to_f64().to_bits())
+}
+
+fn points<P: Position, I: Importance>(sampling: &Sampling<'_, I>) -> Vec<Bits> {
+    sampling.points::<P>().unwrap().map(|sample| bits(&sample.unwrap())).collect()
+}
+
+fn sorted<P: Position, I: Importance>(sampling: &Sampling<'_, I>) -> Vec<Bits> {
+    let mut points = points::<P, I>(sampling);
+    points.sort_unstable();
+    points
+}
+
+/// Zeros, a peak now and then, and noise, from a few bits.
+fn map(width: usize, height: usize, contrast: f32, seed: u64) -> ImageMap {
+    let mut state = seed | 1;
+    let mut pixels: Vec<f32> = Vec::new();
+    for _ in 0..width * height {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        pixels.push(match state >> 60 {
+            0..4 => 0.0,
+            4 => contrast,
+            _ => (state >> 40 & 0xff) as f32 / 256.0,
+        });
+    }
+    pixels[0] = 1.0;
+    ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap()
+}
+
+fn domains() -> impl Strategy<Value = Domain> {
+    prop_oneof![
+        Just(Domain::unit()),
+        Just(Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap()),
+        Just(Domain::new(DVec2::new(1e6, -1e6), DVec2::new(4.0, 9.0)).unwrap()),
+    ]
+}
+
+fn rectangle_in(domain: &Domain, [x0, y0, x1, y1]: [f64; 4]) -> Domain {
+    let low = domain.min() + domain.size() * DVec2::new(x0.min(x1), y0.min(y1));
+    let size = domain.size() * (DVec2::new((x1 - x0).abs(), (y1 - y0).abs()) + 1e-3);
+    Domain::new(low, size).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn a_clip_holds_exactly_the_points_of_the_whole_that_lie_in_it(
+        seed: u64,
+        domain in domains(),
+        size in (1usize..30, 1usize..30),
+        count in 1.0..6000.0f64,
+        contrast in prop_oneof![Just(1.0f32), Just(60.0)],
+        corners in [-0.1..1.1f64, -0.1..1.1, -0.1..1.1, -0.1..1.1],
+    ) {
+        let map = map(size.0, size.1, contrast, seed).over(domain);
+        let placement = Placement::new(domain, seed);
+        let whole = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let uniform = Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
+        let rectangle = rectangle_in(&domain, corners);
+        let kept = |all: Vec<Bits>| -> Vec<Bits> {
+            let inside = |x: u64, y: u64| {
+                rectangle.contains(DVec2::new(f64::from_bits(x), f64::from_bits(y)))
+            };
+            all.into_iter().filter(|(_, x, y)| inside(*x, *y)).collect()
+        };
+        for whole in [whole, whole.relaxed().unwrap()] {
+            let clipped = whole.clipped(rectangle);
+            prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&whole)));
+            prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&whole)));
+        }
+        for uniform in [uniform, uniform.relaxed().unwrap()] {
+            let clipped = uniform.clipped(rectangle);
+            prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&uniform)));
+            prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&uniform)));
+        }
+    }
+
+    #[test]
+    fn shards_in_order_are_the_whole_in_order(
+        seed: u64,
+        size in (1usize..30, 1usize..30),
+        count in 1.0..20_000.0f64,
+        contrast in prop_oneof![Just(1.0f32), Just(900.0)],
+        of in 1usize..12,
+        corners in [0.0..1.0f64, 0.0..1.0, 0.0..1.0, 0.0..1.0],
+    ) {
+        let map = map(size.0, size.1, contrast, seed);
+        let placement = Placement::new(map.domain(), seed);
+        let whole = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let clipped = whole.clipped(rectangle_in(&map.domain(), corners));
+        for whole in [whole, clipped, whole.relaxed().unwrap(), clipped.relaxed().unwrap()] {
+            let parts: Vec<Bits> = (0..of)
+                .flat_map(|i| points::<Vec2, _>(&whole.shard(i, of).unwrap()))
+                .collect();
+            prop_assert_eq!(parts, points::<Vec2, _>(&whole));
+        }
+    }
+
+    #[test]
+    fn buffers_and_visitors_receive_what_the_iterator_yields(
+        seed: u64,
+        domain in domains(),
+        size in (1usize..30, 1usize..30),
+        count in 1.0..6000.0f64,
+        room in 0.0..1.5f64,
+        relaxed: bool,
+    ) {
+        let map = map(size.0, size.1, 9.0, seed).over(domain);
+        let placement = Placement::new(domain, seed);
+        let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let sampling = if relaxed { sampling.relaxed().unwrap() } else { sampling };
+        let all: Vec<Vec2> =
+            sampling.points().unwrap().map(|sample| sample.unwrap().position).collect();
+
+        let room = (room * all.len() as f64) as usize;
+        let mut buffer = vec![Vec2::NAN; room];
+        let filled = sampling.fill(&mut buffer).unwrap();
+        prop_assert_eq!(filled.complete, room >= all.len());
+        prop_assert_eq!(filled.written, room.min(all.len()));
+        prop_assert_eq!(&buffer[..filled.written], &all[..filled.written]);
+
+        let (mut x, mut y) = (vec![f32::NAN; room], vec![f32::NAN; room + 3]);
+        prop_assert_eq!(sampling.fill_columns(&mut x, &mut y).unwrap(), filled);
+        let columns: Vec<Vec2> =
+            x.iter().zip(&y).take(filled.written).map(|(x, y)| Vec2::new(*x, *y)).collect();
+        prop_assert_eq!(&columns[..], &all[..filled.written]);
+
+        let mut visited = Vec::new();
+        sampling
+            .visit(|sample: Sample<Vec2>| {
+                visited.push(sample.position);
+                if visited.len() == room + 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
+            .unwrap();
+        prop_assert_eq!(&visited[..], &all[..all.len().min(room + 1)]);
+    }
+
+    #[test]
+    fn baked_depth_changes_nothing(seed: u64, size in (1usize..30, 1usize..30), count in 1.0..5000.0f64) {
+        let map = map(size.0, size.1, 30.0, seed);
+        let mut expected = None;
+        for depth in 1..=bake::MAX_DEPTH {
+            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
+            let tables = Tables::from_bytes(&bytes).unwrap();
+            let placement = Placement::with_tables(map.domain(), seed, tables);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+            let uniform = Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
+            let points = (sorted::<Vec2, _>(&sampling), sorted::<Vec2, _>(&uniform));
+            prop_assert_eq!(expected.get_or_insert_with(|| points.clone()), &points);
+        }
+    }
+
+    #[test]
+    fn probing_loses_points_but_never_adds_or_moves_one(
+        seed: u64, size in (1usize..40, 1usize..40), count in 1.0..5000.0f64, headroom in 0.5..4.0f64,
+    ) {
+        let map = map(size.0, size.1, 30.0, seed);
+        let placement = Placement::new(map.domain(), seed);
+        let amount = Amount::Points(count);
+        let all = sorted::<Vec2, _>(&Sampling::new(&placement, &map, amount).unwrap());
+        let probed = Probed::new(&map, map.domain(), headroom);
+        let found = sorted::<Vec2, _>(&Sampling::new(&placement, &probed, amount).unwrap());
+        prop_assert!(found.iter().all(|point| all.binary_search(point).is_ok()));
+    }
+}
+
+#[cfg(feature = "parallel")]
+#[test]
+fn threads_change_nothing() {
+    let map = map(300, 200, 2000.0, 4);
+    let placement = Placement::new(map.domain(), 11);
+    let mut shards = twelvefold::Shards::new();
+    for count in [10.0, 3_000.0, 200_000.0] {
+        let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let mut one = vec![Vec2::NAN; 300_000];
+        let filled = sampling.fill(&mut one).unwrap();
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut many = vec![Vec2::NAN; 300_000];
+            let also = pool.install(|| sampling.fill_parallel(&mut many, &mut shards)).unwrap();
+            assert_eq!(filled, also);
+            assert_eq!(one[..filled.written], many[..filled.written]);
+            let short =
+                pool.install(|| sampling.fill_parallel(&mut many[..7], &mut shards)).unwrap();
+            assert!(short.written == 7 && !short.complete);
+            assert_eq!(one[..7], many[..7]);
+        }
+    }
+}
+
+#[test]
+fn a_part_that_does_not_exist_is_an_error() {
+    let placement = Placement::new(Domain::unit(), 1);
+    let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(100.0)).unwrap();
+    for (index, of) in [(0, 0), (3, 3), (usize::MAX, 2)] {
+        assert_eq!(sampling.shard(index, of).unwrap_err(), SamplingError::Shard { index, of });
+    }
+}
+
+#[test]
+fn a_clip_costs_in_proportion_to_its_points() {
+    let map = map(512, 512, 3.0, 8);
+    let placement = Placement::new(map.domain(), 3);
+    let sampling = Sampling::new(&placement, &map, Amount::Points(1_000_000.0)).unwrap();
+    // A thousandth of the area must not need a hundredth of the tiles.
+    let rectangle = Domain::new(DVec2::new(200.0, 100.0), DVec2::splat(16.0)).unwrap();
+    let tiles_enough = |tiles: u64, clip: Option<Domain>| {
+        let limits = Limits { tiles, ..Limits::default() };
+        let sampling =
+            Sampling::with_limits(&placement, &map, Amount::Points(1e6), limits).unwrap();
+        let sampling = clip.map_or(sampling, |clip| sampling.clipped(clip));
+        sampling.points::<Vec2>().unwrap().all(|sample| sample.is_ok())
+    };
+    assert!(sampling.clipped(rectangle).points::<Vec2>().unwrap().count() > 500);
+    let whole = (0..40).map(|i| 1 << i).find(|tiles| tiles_enough(*tiles, None)).unwrap();
+    assert!(tiles_enough(whole / 100, Some(rectangle)), "{whole}");
+}
