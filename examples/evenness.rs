@@ -51,25 +51,31 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     print("white noise", &sets(&white));
     // Deterministic sequences: SETS stretches of each.
-    let halton = |seed| indexed(&|i| {
-        let i = i + seed as usize * count;
-        DVec2::new(radical_inverse(2, i), radical_inverse(3, i))
-    });
+    let halton = |seed| {
+        indexed(&|i| {
+            let i = i + seed as usize * count;
+            DVec2::new(radical_inverse(2, i), radical_inverse(3, i))
+        })
+    };
     print("Halton", &sets(&halton));
     let hammersley =
         |_| indexed(&|i| DVec2::new((i as f64 + 0.5) / count as f64, radical_inverse(2, i)));
     print("Hammersley", &sets(&hammersley));
-    let r2 = |seed| indexed(&|i| {
-        // Roberts 2018: the plastic constant's powers.
-        const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
-        let p = STEP * (i + 1 + seed as usize * count) as f64;
-        p - p.floor()
-    });
+    let r2 = |seed| {
+        indexed(&|i| {
+            // Roberts 2018: the plastic constant's powers.
+            const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+            let p = STEP * (i + 1 + seed as usize * count) as f64;
+            p - p.floor()
+        })
+    };
     print("R2", &sets(&r2));
-    let sobol = |seed| indexed(&|i| {
-        let at = |d| f64::from(sobol_burley::sample(i as u32, d, seed as u32));
-        DVec2::new(at(0), at(1))
-    });
+    let sobol = |seed| {
+        indexed(&|i| {
+            let at = |d| f64::from(sobol_burley::sample(i as u32, d, seed as u32));
+            DVec2::new(at(0), at(1))
+        })
+    };
     print("Owen-scrambled Sobol", &sets(&sobol));
     let poisson = |seed| poisson_disk(count, seed);
     print("Poisson disk (Bridson)", &sets(&poisson));

@@ -131,7 +131,9 @@ mod tests {
             tiles = tiles
                 .iter()
                 .flat_map(|(kind, classes)| {
-                    (0u8..).zip(rules.children(*kind)).map(|(d, c)| (c.kind, classes.child(d, c.kind)))
+                    (0u8..)
+                        .zip(rules.children(*kind))
+                        .map(|(d, c)| (c.kind, classes.child(d, c.kind)))
                 })
                 .collect();
             let count = class_count(generations).unwrap();
@@ -148,6 +150,9 @@ mod tests {
             assert!(seen.iter().all(|s| *s));
             assert_eq!(parts(generations, count), None);
         }
-        assert_eq!([class_count(2), class_count(3), class_count(5)], [Some(766), Some(10669), None]);
+        assert_eq!(
+            [class_count(2), class_count(3), class_count(5)],
+            [Some(766), Some(10669), None]
+        );
     }
 }

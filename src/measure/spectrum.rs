@@ -30,7 +30,8 @@ pub fn low_frequency_power(points: &[DVec2], window: Window) -> Option<f64> {
     // In the unit square the axes count cycles a window; a frequency's length is physical.
     let principal = libm::sqrt(inside.len() as f64 / window.area());
     let limit = 0.5 * principal;
-    let power = tapered_power(&inside, [limit * window.size.x, limit * window.size.y].map(|k| k as usize));
+    let power =
+        tapered_power(&inside, [limit * window.size.x, limit * window.size.y].map(|k| k as usize));
     let (mut sum, mut count) = (0.0, 0u32);
     for (k, p) in power {
         let cycles = DVec2::new(f64::from(k[0]), f64::from(k[1]));
@@ -105,7 +106,10 @@ mod tests {
         assert!((power - 1.0).abs() < 0.1, "{power}");
         assert_eq!(low_frequency_power(&white[..63], UNIT), None);
         // A window of another shape and place sees the same points the same way.
-        let moved = white.iter().map(|p| *p * DVec2::splat(3.0) + DVec2::new(7.0, -2.0)).collect::<Vec<_>>();
+        let moved = white
+            .iter()
+            .map(|p| *p * DVec2::splat(3.0) + DVec2::new(7.0, -2.0))
+            .collect::<Vec<_>>();
         let window = Window::new(DVec2::new(7.0, -2.0), DVec2::splat(3.0));
         assert!((low_frequency_power(&moved, window).unwrap() - power).abs() < 1e-3);
     }

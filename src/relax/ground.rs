@@ -139,15 +139,12 @@ impl<'a> Ground<'a> {
         let tiles = TileCounts::HEXAGON.all()[node.level];
         let level = node.level + 1;
         for digit in 0..node.tile.kind.child_count() as u8 {
-            let rank = crate::tiling::rank::child_rank(
-                &TileCounts::HEXAGON,
-                node.level,
-                node.rank,
-                digit,
-            )
-            .map_err(|_| OutOfRange)?;
+            let rank =
+                crate::tiling::rank::child_rank(&TileCounts::HEXAGON, node.level, node.rank, digit)
+                    .map_err(|_| OutOfRange)?;
             debug_assert!(digit > 0 || rank < tiles);
-            let wanted = if digit == 0 { descend.centre } else { (rank as f64) < descend.ranks_below };
+            let wanted =
+                if digit == 0 { descend.centre } else { (rank as f64) < descend.ranks_below };
             if !wanted {
                 continue;
             }

@@ -20,6 +20,6 @@ pub mod table;
 pub mod train;
 
 pub use field::Field;
-pub use schedule::Recipe;
 pub use ground::{Ground, Region};
+pub use schedule::Recipe;
 pub use site::Site;

@@ -66,19 +66,15 @@ impl Fill {
             wave = wave.signum();
         }
         let middle = 0.5 * SIDE as f32;
-        let ln = self.gradient[0] * (x - middle) + self.gradient[1] * (y - middle)
+        let ln = self.gradient[0] * (x - middle)
+            + self.gradient[1] * (y - middle)
             + amplitude * wave
             + self.grain * noise;
         (self.tone * libm::expf(ln)).clamp(0.02, 1.0)
     }
 }
 
-fn paint(
-    values: &mut [f32],
-    random: &mut Random,
-    fill: &Fill,
-    inside: impl Fn(f32, f32) -> bool,
-) {
+fn paint(values: &mut [f32], random: &mut Random, fill: &Fill, inside: impl Fn(f32, f32) -> bool) {
     for (i, value) in values.iter_mut().enumerate() {
         let (x, y) = ((i % SIDE) as f32, (i / SIDE) as f32);
         if inside(x, y) {

@@ -4,8 +4,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::field::{Constant, Field, spacing, threshold_of_phase};
-use super::image::{Image, ImageRules};
 use super::ground::{Ground, Region};
+use super::image::{Image, ImageRules};
 use super::random::Random;
 use super::site::sites;
 use crate::bake::relaxation::{DELTA, Relaxation};
@@ -70,7 +70,8 @@ pub fn image_points(
     image: &Image,
     random: &mut Random,
 ) -> Result<Vec<DVec2>, OutOfRange> {
-    let margin = DVec2::splat(16.0 * spacing(image.threshold(DVec2::ZERO).max(threshold_of_phase(1.0))));
+    let margin =
+        DVec2::splat(16.0 * spacing(image.threshold(DVec2::ZERO).max(threshold_of_phase(1.0))));
     let half = image.half_extent() + margin;
     let ground = Ground::random(rules, half.length(), random)?;
     Ok(sites(&ground, image, Region::Rectangle(half))?
@@ -94,9 +95,7 @@ pub fn test_image() -> Vec<f32> {
             let (x, y) = ((i % side) as f32, (i / side) as f32);
             let noise = noise.unit() as f32;
             let gradient = 0.08 + 0.92 * x / side as f32;
-            let disc = |cx: f32, cy: f32, r: f32| {
-                (x - cx) * (x - cx) + (y - cy) * (y - cy) < r * r
-            };
+            let disc = |cx: f32, cy: f32, r: f32| (x - cx) * (x - cx) + (y - cy) * (y - cy) < r * r;
             if y < 512.0 {
                 gradient
             } else if x < 512.0 {

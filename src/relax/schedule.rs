@@ -102,10 +102,10 @@ impl Recipe {
         };
         let fine = Grid {
             segments: vec![
-                (1.0, 3, 52.0),
-                (1.25, 3, 22.0),
+                (1.0, 3, 44.0),
+                (1.25, 3, 20.0),
                 (2.0, 3, 18.0),
-                (3.0, 2, 20.0),
+                (3.0, 2, 24.0),
                 (5.0, 2, 9.0),
             ],
             extra: vec![(1.004, 3)],
@@ -153,12 +153,9 @@ impl Recipe {
                 vec![
                     images(
                         32,
-                        vec![
-                            stage(30, 0.45, NO_CONTACTS, 0.2),
-                            stage(30, 0.40, (2.0, 0.65), 0.15),
-                        ],
+                        vec![stage(30, 0.45, NO_CONTACTS, 0.2), stage(30, 0.40, (2.0, 0.65), 0.15)],
                     ),
-                    images(64, vec![stage(40, 0.38, (15.0, 0.75), 0.08)]),
+                    images(80, vec![stage(50, 0.38, (12.0, 0.75), 0.08)]),
                 ],
             )),
         }
@@ -167,10 +164,8 @@ impl Recipe {
     /// A recipe of seconds, for tests: a few sweeps of a few small patches on a coarse grid.
     #[must_use]
     pub fn tiny() -> Self {
-        let grid = Grid {
-            segments: vec![(1.0, 3, 4.0), (2.0, 2, 2.0), (5.0, 2, 0.5)],
-            extra: Vec::new(),
-        };
+        let grid =
+            Grid { segments: vec![(1.0, 3, 4.0), (2.0, 2, 2.0), (5.0, 2, 0.5)], extra: Vec::new() };
         let pass = Pass {
             amplitude: 0.15,
             wavelength: 30.0,
@@ -227,8 +222,8 @@ impl Recipe {
             }
             smooth = Some(table);
         }
-        let smooth = smooth
-            .ok_or(TrainError::Table(RelaxationError::SlotCount { layer: 0, found: 0 }))?;
+        let smooth =
+            smooth.ok_or(TrainError::Table(RelaxationError::SlotCount { layer: 0, found: 0 }))?;
         let rough = match &self.rough {
             Some((grid, passes)) => {
                 let mut table = smooth.resampled(rules, grid.zeros());

@@ -151,12 +151,7 @@ pub struct ImagePass {
     pub stages: Vec<Stage>,
 }
 
-fn sweeps(
-    table: &mut Table,
-    patches: &mut [Points],
-    stages: &[Stage],
-    progress: &mut dyn FnMut(),
-) {
+fn sweeps(table: &mut Table, patches: &mut [Points], stages: &[Stage], progress: &mut dyn FnMut()) {
     let mut velocities = vec![[0.0f32; 2]; table.vectors.len()];
     for stage in stages {
         let law = stage.law.table();

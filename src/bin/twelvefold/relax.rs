@@ -104,10 +104,10 @@ fn bar(sweeps: usize, quiet: bool) -> ProgressBar {
     if quiet || !io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let bar =
-        ProgressBar::with_draw_target(Some(sweeps as u64), ProgressDrawTarget::stderr());
+    let bar = ProgressBar::with_draw_target(Some(sweeps as u64), ProgressDrawTarget::stderr());
     // A template that does not parse leaves the plain style, which is a bar as well.
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} sweeps, {eta} left") {
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len} sweeps, {eta} left")
+    {
         bar.set_style(style);
     }
     bar
