@@ -64,7 +64,7 @@ pub fn block_variance(
         points.iter().copied().filter(|p| image.window().contains(*p)).collect();
     let sums = Sums::new(image);
     let total = sums.rectangle(DVec2::ZERO, image.window().size);
-    if !(total > 0.0) || (inside.len() as f64) < 2.0 * points_per_block {
+    if total <= 0.0 || total.is_nan() || (inside.len() as f64) < 2.0 * points_per_block {
         return None;
     }
     let depth = libm::round(libm::log2(inside.len() as f64 / points_per_block)) as u32;

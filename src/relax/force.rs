@@ -160,7 +160,7 @@ impl Points {
         let cell = LISTED * widest;
         let low = self.positions.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         let high = self.positions.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max);
-        if self.is_empty() || !(cell > 0.0) {
+        if self.is_empty() || cell <= 0.0 {
             self.pair_starts.resize(self.len() + 1, 0);
             return;
         }
