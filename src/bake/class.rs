@@ -118,6 +118,8 @@ pub fn coarsened(rules: &Rules, generations: usize, class: u32, fewer: usize) ->
 
 #[cfg(test)]
 mod tests {
+    use alloc::{vec, vec::Vec};
+
     use alloc::vec;
     use alloc::vec::Vec;
 

@@ -198,8 +198,9 @@ pub const DELTA: f32 = (7.0 + 4.0 * crate::tiling::cyclotomic::SQRT_3) as f32;
 /// How many classes over `generations` may have a member of rank below `tau`·N_m: the vectors that a
 /// slot must hold when the next slot lies at `tau`.
 ///
-/// The smallest rank of a class is its number with δ^G for n_G: d₀ + d₁/δ + d₂/δ² + … is compared
-/// with τ, so a class is counted once its first member is born. Classes are in that order. (Where N_{m+1}/N_m
+/// The rank recurrence with δ for N_{m+1}/N_m gives the smallest rank of a class's members: a child's
+/// is d + parent's/δ, or D + (parent's − 1)/δ. It is compared with τ, so a class is counted once its
+/// first member is born. Classes are in that order. (Where N_{m+1}/N_m
 /// differs from δ a member may be born a trifle earlier: it reads the next slot, as every unborn class does.)
 #[must_use]
 pub fn born_classes(generations: usize, tau: f64) -> u32 {
@@ -211,7 +212,10 @@ pub fn born_classes(generations: usize, tau: f64) -> u32 {
         let middle = low + (high - low) / 2;
         let birth = super::class::parts(generations, middle).map_or(f64::INFINITY, |parts| {
             let digits = &parts.oldest_first[..generations];
-            digits.iter().fold(0.0, |sum, d| sum / delta + f64::from(*d))
+            digits.iter().fold(0.0, |parent, digit| {
+                let carry = f64::from(u8::from(*digit == 13));
+                f64::from(*digit) + (parent - carry) / delta
+            })
         });
         if birth < tau { low = middle + 1 } else { high = middle }
     }

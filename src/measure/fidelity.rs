@@ -64,7 +64,7 @@ pub fn block_variance(
         points.iter().copied().filter(|p| image.window().contains(*p)).collect();
     let sums = Sums::new(image);
     let total = sums.rectangle(DVec2::ZERO, image.window().size);
-    if !(total > 0.0) || (inside.len() as f64) < 2.0 * points_per_block {
+    if total <= 0.0 || total.is_nan() || (inside.len() as f64) < 2.0 * points_per_block {
         return None;
     }
     let depth = libm::round(libm::log2(inside.len() as f64 / points_per_block)) as u32;
@@ -213,4 +213,59 @@ pub fn fidelity(points: &[DVec2], image: &Importance<'_>) -> Option<Fidelity> {
         mean_distance: distances.mean(),
         first_percentile: distances.percentile(0.01),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn uniform(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (*state >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    #[test]
+    fn independent_points_have_variance_one_and_lattices_almost_none() {
+        let (width, height) = (96, 64);
+        // Importance rising to the right: u = (x/width)² has the density 2x, so x = width·√u.
+        let values: Vec<f32> = (0..width * height).map(|i| (i % width) as f32 + 0.5).collect();
+        let image = Importance { values: &values, width };
+        let mut state = 2;
+        let points: Vec<DVec2> = (0..60_000)
+            .map(|_| {
+                let x = width as f64 * uniform(&mut state).sqrt();
+                DVec2::new(x, height as f64 * uniform(&mut state))
+            })
+            .collect();
+        let measured = fidelity(&points, &image).unwrap();
+        assert!((measured.block_variance - 1.0).abs() < 0.12, "{measured:?}");
+        // The mean nearest distance of a Poisson process, 1/(2√ρ), over the hexagonal one.
+        assert!((measured.mean_distance - 0.465).abs() < 0.01, "{measured:?}");
+        // 1 % lie nearer than r with ρπr² = −ln 0.99.
+        assert!((measured.first_percentile - 0.0526).abs() < 0.005, "{measured:?}");
+
+        let flat = vec![1.0; width * height];
+        let image = Importance { values: &flat, width };
+        let lattice: Vec<DVec2> = (0..256 * 384)
+            .map(|i| DVec2::new(f64::from(i % 384) + 0.5, f64::from(i / 384) + 0.5) * 0.25)
+            .collect();
+        let measured = fidelity(&lattice, &image).unwrap();
+        assert!(measured.block_variance < 0.2, "{measured:?}");
+        // A square lattice: √(√3/2) of the hexagonal distance.
+        assert!((measured.first_percentile - 0.9306).abs() < 1e-3, "{measured:?}");
+    }
+
+    #[test]
+    fn points_on_nothing_are_counted_as_wrong() {
+        let values = [0.0, 1.0];
+        let image = Importance { values: &values, width: 2 };
+        let at = |x: f64| DVec2::new(x, 0.5);
+        assert_eq!(share_on_zero(&[at(0.99), at(1.0), at(1.5), at(1.9), at(2.0)], &image), 0.25);
+        assert_eq!(share_on_zero(&[], &image), 0.0);
+        assert_eq!(block_variance(&[at(1.5); 127], &image, 64.0), None);
+        assert_eq!(
+            block_variance(&[at(1.5); 200], &Importance { values: &[0.0], width: 1 }, 64.0),
+            None
+        );
+    }
 }

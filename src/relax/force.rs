@@ -160,7 +160,7 @@ impl Points {
         let cell = LISTED * widest;
         let low = self.positions.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         let high = self.positions.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max);
-        if self.is_empty() || !(cell > 0.0) {
+        if self.is_empty() || cell <= 0.0 {
             self.pair_starts.resize(self.len() + 1, 0);
             return;
         }
@@ -248,5 +248,63 @@ impl Points {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bake::class::Classes;
+    use crate::tiling::TileType;
+
+    fn site(x: f64, y: f64, rotation: u8) -> Site {
+        Site {
+            centre: DVec2::new(x, y),
+            rank: 0,
+            level: 9,
+            edge: 1.0,
+            rotation,
+            classes: Classes::root(TileType::A),
+            tau: 2.0,
+            detail: 0.0,
+            spacing: 1.0,
+        }
+    }
+
+    #[test]
+    fn close_points_push_each_other_apart_in_their_own_frames() {
+        let sites = [site(0.0, 0.0, 0), site(0.5, 0.0, 3), site(9.0, 0.0, 0)];
+        let law = Law { sigma: 0.4, stiffness: 3.0, contact: 0.8 };
+        let entry = |s: &Site| [((s.centre.x * 2.0) as u32, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)];
+        let mut points = Points::new(&sites, entry, |_| true);
+        assert_eq!((points.first, points.sums.len(), points.len()), (0, 19, 3));
+        points.sweep(&[[0.0; 2]; 19], &law.table(), true);
+        let expected = (-0.25f64 / 0.32).exp() * 0.5 / 0.4 + 3.0 * 0.3;
+        let (left, right, far) = (points.sums[0], points.sums[1], points.sums[18]);
+        assert!((f64::from(left.force.x) + expected).abs() < 1e-3, "{left:?} {expected}");
+        assert!(left.force.y.abs() < 1e-6);
+        // Its frame is turned by 90°: a push to the right is one along −y there.
+        assert!((f64::from(right.force.y) + expected).abs() < 1e-3, "{right:?}");
+        assert_eq!((far.force, far.weight), (Vec2::ZERO, 1.0));
+    }
+
+    #[test]
+    fn the_table_moves_points_before_they_push() {
+        let sites = [site(0.0, 0.0, 0), site(0.5, 0.0, 3)];
+        let law = Law { sigma: 0.4, stiffness: 0.0, contact: 0.0 };
+        let entry = |s: &Site| [((s.centre.x * 2.0) as u32, 0.5), (2, 0.5), (0, 0.0), (0, 0.0)];
+        let mut points = Points::new(&sites, entry, |s| s.centre.x > 0.0);
+        // The second goes down by (2 + 0)/2 in its frame's x, which is the plane's y.
+        points.sweep(&[[0.0; 2], [-2.0, 0.0], [0.0; 2]], &law.table(), true);
+        let r = 1.25f64.sqrt();
+        let strength = (-1.25f64 / 0.32).exp() * r / 0.4;
+        // Along (0.5, −1)/r in the plane: (−1, −0.5)/r in the frame; half of it to each entry.
+        let expected = [-strength / r * 0.5, -0.5 * strength / r * 0.5];
+        for sum in [points.sums[1], points.sums[2]] {
+            assert!((f64::from(sum.force.x) - expected[0]).abs() < 1e-4, "{sum:?} {expected:?}");
+            assert!((f64::from(sum.force.y) - expected[1]).abs() < 1e-4, "{sum:?} {expected:?}");
+            assert_eq!(sum.weight, 0.5);
+        }
+        assert_eq!(points.sums[0], Sum::default());
     }
 }

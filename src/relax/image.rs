@@ -59,7 +59,7 @@ pub struct ImageRules {
 impl Default for ImageRules {
     fn default() -> Self {
         Self {
-            accept_radius: 0.5,
+            accept_radius: 0.6,
             phase_radius: 1.0,
             detail_radius: 1.0,
             detail_range: [0.03, 0.15],
@@ -315,5 +315,81 @@ impl Sums {
         let (a, b) = (self.corner(high[0], high[1]), self.corner(low[0], high[1]));
         let (c, d) = (self.corner(high[0], low[1]), self.corner(low[0], low[1]));
         core::array::from_fn(|k| (a[k] - b[k] - c[k] + d[k]) / area)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relax::random::Random;
+    use crate::relax::report::{TEST_IMAGE_SIDE, edge_image, test_image};
+
+    #[test]
+    fn images_that_ask_for_nothing_are_refused() {
+        let new = |values: Vec<f32>, width| {
+            Image::new(values, width, 100.0, 3.0, ImageRules::default()).is_some()
+        };
+        assert!(new(vec![0.0, 1.0, 0.0, 0.0], 2));
+        assert!(!new(vec![], 2) && !new(vec![1.0; 4], 0) && !new(vec![1.0; 5], 2));
+        assert!(!new(vec![0.0; 4], 2) && !new(vec![1.0, f32::NAN], 2) && !new(vec![1.0, -1.0], 2));
+    }
+
+    #[test]
+    fn bounds_hold_inside_and_outside_the_image() {
+        let rules = ImageRules { accept_radius: 0.2, ..ImageRules::default() };
+        let image = Image::new(test_image(), TEST_IMAGE_SIDE, 5e3, 3.0, rules).unwrap();
+        let mut random = Random::new(3, &[]);
+        for _ in 0..4000 {
+            let mut around =
+                |scale: f64| DVec2::new(random.unit() - 0.5, random.unit() - 0.5) * scale;
+            let (p, offset) = (around(250.0), around(1.0));
+            let radius = random.unit() * random.unit() * 60.0;
+            let q = p + offset * radius;
+            assert!(image.threshold(q) <= image.bound(p, radius), "{p} {radius}");
+        }
+    }
+
+    #[test]
+    fn uniform_images_are_constant_fields() {
+        let image = Image::new(vec![0.3; 5000], 100, 1000.0, 2.5, ImageRules::default()).unwrap();
+        let threshold = threshold_of_phase(2.5);
+        for p in [DVec2::ZERO, image.half_extent(), DVec2::splat(-1e4)] {
+            assert!((image.threshold(p) / threshold - 1.0).abs() < 1e-6);
+            assert!((image.local(p) / threshold - 1.0).abs() < 1e-6);
+            assert_eq!(image.detail(p), 0.0);
+        }
+        // The density times the area is the count.
+        let area = 4.0 * image.half_extent().element_product();
+        assert!((density(threshold) * area / 1000.0 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_stay_on_the_side_of_an_edge_that_asks_for_them() {
+        let values = edge_image();
+        let image =
+            Image::new(values.clone(), TEST_IMAGE_SIDE, 6e4, 3.0, ImageRules::default()).unwrap();
+        let is_dark = |p: DVec2| {
+            let q = image.pixels(p).clamp(DVec2::ZERO, DVec2::splat(1023.0));
+            values[q.y as usize * TEST_IMAGE_SIDE + q.x as usize] > 0.0
+        };
+        let mut random = Random::new(4, &[]);
+        let (mut kept, mut held) = (0, 0);
+        for _ in 0..3000 {
+            let centre =
+                image.half_extent() * (2.0 * DVec2::new(random.unit(), random.unit()) - 1.0);
+            if !is_dark(centre) {
+                continue;
+            }
+            let moved = centre + (DVec2::new(random.unit(), random.unit()) - 0.5) * 2.0;
+            let settled = image.settle(centre, 1000, moved);
+            assert!(is_dark(settled));
+            if is_dark(moved) {
+                assert_eq!(settled, moved);
+                kept += 1;
+            } else {
+                held += 1;
+            }
+        }
+        assert!(kept > 500 && held > 50, "{kept} {held}");
     }
 }

@@ -54,3 +54,32 @@ impl Field for Ramp {
         threshold_of_phase(phase) * (1.0 + 1e-9)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relax::random::Random;
+
+    #[test]
+    fn bounds_hold() {
+        let mut random = Random::new(1, &[]);
+        for i in 0..200 {
+            let mut vector =
+                |scale: f64| DVec2::new(random.unit() - 0.5, random.unit() - 0.5) * scale;
+            let (along, wave) = (vector(1.0).normalize(), vector(0.3));
+            let (p, offset) = (vector(300.0), vector(1.0));
+            let ramp = Ramp {
+                phases: [1.0 + random.unit(), 1.0 + 12.0 * random.unit()],
+                radius: 100.0,
+                along,
+                wave,
+                amplitude: if i % 2 == 0 { 0.9 } else { 0.15 },
+                start: random.unit(),
+            };
+            let radius = 40.0 * random.unit();
+            let q = p + offset * (2.0 * radius * 0.70);
+            assert!((q - p).length() <= radius);
+            assert!(ramp.threshold(q) <= ramp.bound(p, radius));
+        }
+    }
+}

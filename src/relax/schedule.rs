@@ -120,10 +120,10 @@ impl Recipe {
                 stage(30, 0.35, NO_CONTACTS, 0.22),
             ],
         };
-        let stiff = |sweeps, sigma, contacts, step| Pass {
+        let stiff = |points, sweeps, sigma, contacts, step| Pass {
             amplitude: 0.12,
             wavelength: 60.0,
-            points: [40e3, 50e3],
+            points,
             stages: vec![stage(sweeps, sigma, contacts, step)],
         };
         let images = |patches, stages| ImagePass {
@@ -139,9 +139,10 @@ impl Recipe {
                 Phase {
                     grid: fine,
                     passes: vec![
-                        stiff(24, 0.35, (10.0, 0.86), 0.14),
-                        stiff(30, 0.35, (30.0, 0.86), 0.05),
-                        stiff(36, 0.36, (60.0, 0.84), 0.025),
+                        stiff([40e3, 50e3], 24, 0.35, (10.0, 0.86), 0.14),
+                        stiff([40e3, 50e3], 30, 0.35, (30.0, 0.86), 0.05),
+                        // The more points, the rarer the neighbourhoods that are seen.
+                        stiff([60e3, 70e3], 36, 0.37, (70.0, 0.85), 0.022),
                     ],
                 },
             ],
@@ -155,7 +156,7 @@ impl Recipe {
                         32,
                         vec![stage(30, 0.45, NO_CONTACTS, 0.2), stage(30, 0.40, (2.0, 0.65), 0.15)],
                     ),
-                    images(64, vec![stage(40, 0.38, (15.0, 0.75), 0.08)]),
+                    images(80, vec![stage(50, 0.38, (12.0, 0.75), 0.08)]),
                 ],
             )),
         }

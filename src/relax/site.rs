@@ -101,3 +101,70 @@ pub fn cosine_and_sine(rotation: u8) -> [f64; 2] {
     let k = usize::from(rotation % 12);
     [COSINES[k], COSINES[(k + 9) % 12]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::relax::field::{Constant, threshold_of_phase};
+    use crate::relax::ground::{BASE_LEVEL, density};
+    use crate::relax::random::Random;
+    use crate::tiling::{Digits, FCode, Rules, Tile, TileType};
+
+    fn rules() -> Rules {
+        Rules::new(&Digits::parse(include_str!("../../tables/digits.txt")).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn sites_are_the_tiles_that_their_ranks_name() {
+        let rules = rules();
+        // Phases of the base level, of the level above and of the level below.
+        for (tau, level) in [(3.3, BASE_LEVEL), (0.4, BASE_LEVEL - 1), (20.0, BASE_LEVEL + 1)] {
+            let field = Constant(threshold_of_phase(tau));
+            let radius = 20.0 * spacing(field.0);
+            let ground = Ground::random(&rules, radius, &mut Random::new(5, &[])).unwrap();
+            let sites = sites(&ground, &field, Region::Disc(radius)).unwrap();
+            let expected = density(field.0) * core::f64::consts::PI * radius * radius;
+            assert!(
+                (sites.len() as f64 / expected - 1.0).abs() < 0.03,
+                "{} {expected}",
+                sites.len()
+            );
+            let mut origin = None;
+            for site in &sites {
+                assert_eq!(site.level, level);
+                assert!((site.rank as f64) < field.0);
+                let code = FCode::from_rank(TileType::A, level, site.rank).unwrap();
+                let tile = code.tile(&rules).unwrap();
+                // Where the centre must lie, up to the ground's place, the same for all sites.
+                let place = DVec2::from(tile.centre.to_f64()) * site.edge - site.centre;
+                assert!((*origin.get_or_insert(place) - place).length() < 1e-6);
+                let digits: Vec<u8> = code.oldest_first().collect();
+                let (older, newest) = digits.split_at(level - 2);
+                let mut ancestor = Tile::root(TileType::A);
+                for digit in older {
+                    ancestor = rules.child_of(&ancestor, *digit).unwrap().unwrap();
+                }
+                assert_eq!(site.rotation, ancestor.rotation);
+                let mut classes = Classes::root(ancestor.kind);
+                let mut kind = ancestor.kind;
+                for digit in newest {
+                    kind = rules.children(kind)[usize::from(*digit)].kind;
+                    classes = classes.child(*digit, kind);
+                }
+                assert_eq!(site.classes.over(2), classes.over(2));
+                let levels = level as f64 - BASE_LEVEL as f64;
+                assert!((site.tau * 13.928_203f64.powf(levels) / tau - 1.0).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn turning_by_thirty_degrees() {
+        for k in 0..12u8 {
+            let [c, s] = cosine_and_sine(k);
+            let (sin, cos) = (f64::from(k) * core::f64::consts::PI / 6.0).sin_cos();
+            assert!((c - cos).abs() < 1e-15 && (s - sin).abs() < 1e-15);
+        }
+        assert_eq!(turned(DVec2::new(1.0, 2.0), 3), DVec2::new(-2.0, 1.0));
+    }
+}

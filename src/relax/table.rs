@@ -1,7 +1,7 @@
 //! A table in training: real vectors, all classes of every slot.
 
 use super::site::Site;
-use crate::bake::class::{self, Classes, class_count};
+use crate::bake::class::{self, class_count};
 use crate::bake::relaxation::{DELTA, Layer, RelaxationError, Slot, born_classes};
 use crate::tiling::Rules;
 
@@ -170,10 +170,45 @@ impl Table {
         });
         Layer::new(layer, slots.collect())
     }
+}
 
-    /// The class of a site at a slot, for tests and reports.
-    #[must_use]
-    pub fn class_at(&self, slot: usize, classes: &Classes) -> u32 {
-        classes.over(self.slots[slot].generations)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tiling::Digits;
+
+    #[test]
+    fn grids_resample_between_generations_and_quantize_within_half_a_step() {
+        let rules =
+            Rules::new(&Digits::parse(include_str!("../../tables/digits.txt")).unwrap()).unwrap();
+        let mut coarse = Table::zeros(&[(1.0, 2, 2.0), (3.0, 2, 0.5)], &[]);
+        let taus: Vec<f32> = coarse.slots().iter().map(|s| s.tau).collect();
+        assert_eq!(taus[..4], [1.0, 1.5, 2.0, 2.5]);
+        assert_eq!(taus.last(), Some(&DELTA));
+        let last = coarse.slots().len() - 1;
+        for slot in 1..last {
+            for (class, entry) in coarse.range(slot).enumerate() {
+                coarse.vectors[entry] = [class as f32 / 300.0, slot as f32];
+            }
+        }
+        let fine = coarse.resampled(&rules, Table::zeros(&[(1.0, 3, 4.0), (3.0, 2, 1.0)], &[]));
+        // Slot 3 of the fine grid, τ = 1.75, lies halfway between slots 1 and 2 of the coarse one.
+        let range = fine.range(3);
+        for (class, entry) in range.enumerate().step_by(97) {
+            let parent = class::coarsened(&rules, 3, class as u32, 2).unwrap();
+            let [x, y] = fine.vectors[entry];
+            assert!((x - parent as f32 / 300.0).abs() < 1e-5 && (y - 1.5).abs() < 1e-6);
+        }
+        let layer = coarse.quantized(0).unwrap();
+        let again = Table::from_layer(&rules, &layer);
+        for slot in 1..last {
+            let held = layer.slots()[slot].vectors.len();
+            let half = 0.5001 * layer.slots()[slot].scale;
+            for entry in coarse.range(slot).take(held) {
+                for k in 0..2 {
+                    assert!((coarse.vectors[entry][k] - again.vectors[entry][k]).abs() <= half);
+                }
+            }
+        }
     }
 }
