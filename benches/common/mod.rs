@@ -1,0 +1,118 @@
+//! What the benches and the speed report compare: our ways to make points and their peers, each at its
+//! best: tables built before, buffers kept, nothing allocated while the clock runs.
+
+#![allow(dead_code, reason = "each bench uses a part")]
+
+pub(crate) mod maps;
+pub(crate) mod peers;
+
+use std::hint::black_box;
+
+use glam::Vec2;
+use twelvefold::{
+    Amount, Constant, Domain, ImageMap, Importance, Placement, Sampling, Tables, bake,
+};
+
+use maps::Map;
+
+/// Something that writes points into a buffer.
+pub(crate) struct Contender<'a> {
+    /// As the table shows it.
+    pub(crate) name: String,
+    /// The most points it is asked for: some are too slow for more.
+    pub(crate) most: usize,
+    /// Prepares `n` points (not timed) and returns what makes them (timed): it writes them to the
+    /// buffer's start and returns how many.
+    #[allow(clippy::type_complexity, reason = "said once")]
+    pub(crate) prepare: Box<dyn Fn(usize) -> Box<dyn FnMut(&mut [Vec2]) -> usize + 'a> + 'a>,
+}
+
+impl<'a> Contender<'a> {
+    /// A contender that makes any number of points.
+    pub(crate) fn new<F, G>(name: &str, prepare: F) -> Self
+    where
+        F: Fn(usize) -> G + 'a,
+        G: FnMut(&mut [Vec2]) -> usize + 'a,
+    {
+        let prepare =
+            move |n: usize| -> Box<dyn FnMut(&mut [Vec2]) -> usize + 'a> { Box::new(prepare(n)) };
+        Self { name: name.into(), most: usize::MAX, prepare: Box::new(prepare) }
+    }
+
+    /// The same for at most `most` points.
+    pub(crate) fn at_most(self, most: usize) -> Self {
+        Self { most, ..self }
+    }
+
+    /// Panics unless `made` is the number asked for: exactly for sequences, within a few standard
+    /// deviations where the number is random.
+    pub(crate) fn assert_count(&self, asked: usize, made: usize) {
+        let slack = 8.0 * (asked as f64).sqrt() + 8.0;
+        assert!((made as f64 - asked as f64).abs() <= slack, "{}: {made} for {asked}", self.name);
+    }
+}
+
+/// Ours: the placement is kept, the sampling is made anew, as in a frame.
+fn ours<'a, I: Importance>(
+    name: &str,
+    domain: Domain,
+    tables: Tables<'static>,
+    importance: &'a I,
+) -> Contender<'a> {
+    Contender::new(name, move |n| {
+        // The seed whose number is nearest to the expected one: the time a point is compared.
+        let placements: Vec<_> =
+            (0..8).map(|seed| Placement::with_tables(domain, seed, tables)).collect();
+        let mut buffer = vec![Vec2::ZERO; n + n / 8 + 64];
+        let mut off = |placement: &Placement<'_>| {
+            let sampling = Sampling::new(placement, importance, Amount::Points(n as f64));
+            let made = sampling.and_then(|s| s.fill(&mut buffer)).expect("a valid sampling");
+            made.written.abs_diff(n)
+        };
+        let placement = if n > 1 << 20 {
+            placements[0].clone()
+        } else {
+            placements.iter().min_by_key(|p| off(p)).expect("eight placements").clone()
+        };
+        move |buffer: &mut [Vec2]| {
+            let sampling = Sampling::new(&placement, importance, Amount::Points(n as f64));
+            let filled = sampling.and_then(|s| s.fill(buffer)).expect("a valid sampling");
+            assert!(filled.complete);
+            filled.written
+        }
+    })
+}
+
+/// Copying as many points as there are.
+pub(crate) fn memcpy<'a>() -> Contender<'a> {
+    Contender::new("memcpy of the same bytes", |n| {
+        let source = vec![Vec2::ONE; n];
+        move |buffer| {
+            buffer[..n].copy_from_slice(black_box(&source));
+            n
+        }
+    })
+}
+
+/// Uniform density over the unit square, memcpy first.
+pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
+    let mut all = vec![memcpy()];
+    for depth in 2..=bake::MAX_DEPTH {
+        let bytes = bake::bake(&Tables::built_in().rules(), depth).expect("a depth in range");
+        // Kept for the whole run.
+        let tables = Tables::from_bytes(bytes.leak()).expect("baked just now");
+        let name = format!("twelvefold, baked depth {depth}");
+        all.push(ours(&name, Domain::unit(), tables, &Constant::ONE));
+    }
+    all.extend(peers::uniform());
+    all
+}
+
+/// An importance map over its pixels, memcpy first.
+pub(crate) fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
+    let importance: &'a ImageMap = &map.importance;
+    let mut all = vec![memcpy()];
+    all.push(ours("twelvefold", importance.domain(), Tables::built_in(), importance));
+    all.extend(peers::image(map));
+    all
+}
