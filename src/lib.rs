@@ -2,7 +2,11 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
+#[cfg(test)]
+mod accuracy;
 pub mod bake;
 mod clip;
 mod domain;

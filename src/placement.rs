@@ -183,10 +183,14 @@ impl<'t> Placement<'t> {
         let half_edge = self.half_edge(node.level);
         let doubled = 2.0 * node.centre.to_dvec2();
         let edge = 2.0 * half_edge.length();
+        let (min, max) = (self.domain.min(), self.domain.max());
+        // Far from the origin, the sums of a corner and an offset, here and where an importance is
+        // asked, round by more than the domain's own size suggests: four units of the last place.
+        let far = 1e-15 * min.abs().max(max.abs()).max_element();
         Region {
-            centre: self.domain.min() + (self.origin + half_edge.rotate(doubled)),
-            // f32 positions are off by up to 2⁻²¹ diagonals (tests/accuracy.rs).
-            radius: REACH * edge + self.domain.diagonal() * 1e-6,
+            centre: min + (self.origin + half_edge.rotate(doubled)),
+            // f32 positions are off by at most 3 ulps, 4·10⁻⁷ diagonals (src/accuracy.rs).
+            radius: REACH * edge + self.domain.diagonal() * 1e-6 + far,
         }
     }
 }
