@@ -10,6 +10,8 @@ mod accuracy;
 pub mod bake;
 mod clip;
 mod domain;
+mod environment;
+pub mod estimate;
 pub mod importance;
 #[cfg(test)]
 mod oracle;
@@ -23,7 +25,10 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
-pub use importance::{Constant, Function, ImageMap, Importance, InvalidPixels, MapError};
+pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
+pub use importance::{
+    BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError,
+};
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
 pub use sampling::{Amount, Limits, Sampling, SamplingError};

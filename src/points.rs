@@ -10,7 +10,7 @@ use crate::walk::leaf::Leaf;
 use crate::walk::scalar::{Position, Scalar};
 use crate::walk::traverse::Traversal;
 
-/// A point of the set.
+/// A point of the set. [`Sampling::weighted`] adds what estimates need: density and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<P> {
     /// Where it is, in the caller's units, inside the half-open domain.

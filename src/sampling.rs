@@ -325,6 +325,16 @@ impl RankScale {
         whole.saturating_add(u64::from((whole as f64) < limit))
     }
 
+    /// rank + u: a point's place in the sequence.
+    pub(crate) fn shifted(self, rank: u64) -> f64 {
+        rank as f64 + self.shift
+    }
+
+    /// z = (rank + u)/T, below 1 for an accepted point.
+    pub(crate) fn place(self, rank: u64, value: f64) -> f64 {
+        self.shifted(rank) / (value * self.magnification)
+    }
+
     /// `rank < limit(value)`, for a rank below 2⁶³.
     #[inline(always)]
     pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {

@@ -23,6 +23,20 @@ pub enum InvalidPixels {
     ZeroAll,
 }
 
+impl InvalidPixels {
+    /// The value as it counts, or `None` if this policy does not admit it.
+    pub(crate) fn admit(self, value: f32) -> Option<f32> {
+        if value >= 0.0 && value < f32::INFINITY {
+            return Some(value);
+        }
+        match self {
+            Self::ZeroAll => Some(0.0),
+            Self::ZeroNegative if value < 0.0 && value.is_finite() => Some(0.0),
+            _ => None,
+        }
+    }
+}
+
 /// Why pixels are no importance map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -154,7 +168,7 @@ impl ImageMap {
     }
 
     /// Column and row of the pixel under a point, clamped to the image.
-    fn texel(&self, at: DVec2) -> (usize, usize) {
+    pub(crate) fn texel(&self, at: DVec2) -> (usize, usize) {
         let t = (at - self.domain.min()) * self.texels_per_unit;
         // `as` takes negative numbers and NaN to 0.
         ((t.x as usize).min(self.width - 1), (t.y as usize).min(self.height - 1))
@@ -166,13 +180,7 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
     let mut sum = 0.0;
     for (x, pixel) in row.iter_mut().enumerate() {
         let value = *pixel;
-        if !(value >= 0.0 && value < f32::INFINITY) {
-            match invalid {
-                InvalidPixels::ZeroAll => *pixel = 0.0,
-                InvalidPixels::ZeroNegative if value < 0.0 && value.is_finite() => *pixel = 0.0,
-                _ => return Err((x, value)),
-            }
-        }
+        *pixel = invalid.admit(value).ok_or((x, value))?;
         sum += f64::from(*pixel);
     }
     Ok(sum)

@@ -4,11 +4,14 @@
 //! which a [`Sampling`](crate::Sampling) derives from the wanted [`Amount`](crate::Amount). Units of
 //! importance are the caller's; only ratios matter when a count is asked for.
 
+mod bilinear;
 mod constant;
 mod function;
 mod map;
 mod pyramid;
+pub(crate) mod sums;
 
+pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
