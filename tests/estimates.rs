@@ -49,7 +49,7 @@ impl Running {
 
 /// ∫ f over the part of the domain where the importance is above 0, by the midpoint rule.
 fn integrals<I: Importance>(importance: &I, domain: &Domain) -> [f64; 4] {
-    let side = 1024;
+    let side = 1024usize;
     let mut sums = [0.0; 4];
     for j in 0..side {
         for i in 0..side {
@@ -219,7 +219,7 @@ fn each_refinement_lowers_the_error_as_documented() {
     let photograph = map(64, 64, |x, y| 0.05 + photograph().pixels()[y * 64 + x]);
     let domain = photograph.domain();
     let truths = integrals(&photograph, &domain);
-    let n = 4096;
+    let n = 4096usize;
     let weighted = |seed, weighting| {
         let placement = Placement::new(domain, seed);
         let sampling = Sampling::new(&placement, &photograph, Amount::Points(n as f64)).unwrap();
@@ -293,7 +293,7 @@ fn a_warp_preserves_measure_at_odd_sizes_and_stays_in_the_square() {
     let domain = Domain::new(DVec2::new(-7.0, 1e3), DVec2::new(0.3, 50.0)).unwrap();
     let image = image.over(domain);
     let warp = Warp::new(&image).unwrap();
-    let side = 600;
+    let side = 600usize;
     let mut counts = [0.0; 15];
     for j in 0..side {
         for i in 0..side {
@@ -475,7 +475,7 @@ fn a_bilinear_map_is_sampled_like_its_function() {
     let points: Vec<_> = sampling.points::<DVec2>().unwrap().map(Result::unwrap).collect();
     assert!((points.len() as f64 / 20_000.0 - 1.0).abs() < 0.01);
     // The left half holds its share of the integral, by the midpoint rule.
-    let (mut left, mut all, side) = (0.0, 0.0, 700);
+    let (mut left, mut all, side) = (0.0, 0.0, 700usize);
     for j in 0..side {
         for i in 0..side {
             let at = (DVec2::new(i as f64, j as f64) + 0.5) / side as f64 * domain.size();

@@ -53,7 +53,8 @@ fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
         ));
 
         let radius = 2e-6;
-        let (centre, expected) = (DVec2::new(0.3, 0.8), 3.1416 * radius * radius * density);
+        let (centre, expected) =
+            (DVec2::new(0.3, 0.8), core::f64::consts::PI * radius * radius * density);
         let spot = disc(centre, radius);
         let sampling =
             Sampling::with_limits(&placement, &spot, Amount::Density(density), few_tiles());

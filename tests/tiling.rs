@@ -4,7 +4,8 @@
 use std::collections::{HashMap, HashSet};
 
 use proptest::prelude::*;
-use twelvefold::tiling::{Cyclotomic, Digits, FCode, Rules, Surd, Tile, TileCounts, TileType};
+use twelvefold::Tables;
+use twelvefold::tiling::{Cyclotomic, FCode, Rules, Surd, Tile, TileCounts, TileType};
 
 /// The paper's equation 1 as it prints it: the F-code digit of each child after its type.
 const EQUATION_1: [(TileType, &str); 4] = [
@@ -15,7 +16,7 @@ const EQUATION_1: [(TileType, &str); 4] = [
 ];
 
 fn rules() -> Rules {
-    Rules::new(&Digits::parse(include_str!("../tables/digits.txt")).unwrap()).unwrap()
+    Tables::built_in().rules()
 }
 
 /// Every tile `levels` below `tile`, with absolute coordinates.

@@ -26,7 +26,7 @@ pub enum InvalidPixels {
 impl InvalidPixels {
     /// The value as it counts, or `None` if this policy does not admit it.
     pub(crate) fn admit(self, value: f32) -> Option<f32> {
-        if value >= 0.0 && value < f32::INFINITY {
+        if (0.0..f32::INFINITY).contains(&value) {
             return Some(value);
         }
         match self {

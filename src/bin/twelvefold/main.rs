@@ -5,6 +5,7 @@ mod args;
 mod drawing;
 mod failure;
 mod figures;
+mod interrupt;
 mod output;
 mod picture;
 mod progress;
