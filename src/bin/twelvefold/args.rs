@@ -4,11 +4,14 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use twelvefold::tiling::TileType;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
+
+/// The most points that are counted exactly: they are sorted in memory, 56 bytes each.
+pub(crate) const MAX_EXACT: u64 = 10_000_000;
 
 /// Well-spread points with a density you control, from a dodecagonal aperiodic tiling.
 #[derive(Debug, Parser)]
@@ -23,6 +26,15 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
     Stipple(StippleOptions),
+    /// Choose directions towards the light of an environment map, as CSV.
+    ///
+    /// The columns are x,y,z,pdf,red,green,blue: a direction of length 1, z up; its probability density
+    /// per steradian; and the map's radiance there. The light that falls on a surface is estimated by
+    /// the sum over all lines of radiance × cosine / (N × pdf).
+    ///
+    /// The map is a latitude-longitude image: the upper border is +z, and the left border and the
+    /// quarter, half and three quarters of the width are +x, +y, -x and -y.
+    Envmap(EnvmapOptions),
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
@@ -35,6 +47,51 @@ pub(crate) enum Command {
     Tiling(TilingOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
+}
+
+/// Options of `twelvefold envmap`.
+#[derive(Debug, Args)]
+pub(crate) struct EnvmapOptions {
+    /// The environment map: Radiance HDR or OpenEXR, told apart by content.
+    pub(crate) map: PathBuf,
+
+    /// How many directions, at most 10,000,000. Exactly as many are chosen.
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_EXACT))]
+    pub(crate) directions: u64,
+
+    /// Where the table goes, or `-` for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// Chooses which of many equally good sets is taken.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// What to do with negative radiance, which resampling leaves in real maps.
+    #[arg(long, value_enum, default_value_t = Negative::Reject)]
+    pub(crate) negative: Negative,
+
+    /// How directions are chosen.
+    #[arg(long, value_enum, default_value_t = Method::Progressive)]
+    pub(crate) method: Method,
+}
+
+/// A policy for negative radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Negative {
+    /// It is an error, which names the first pixel.
+    Reject,
+    /// It counts as zero.
+    Zero,
+}
+
+/// A way to choose directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// In an order of which each beginning is itself a good set.
+    Progressive,
+    /// A complete level of the tiling, warped: the least error for this number, in no useful order.
+    Warp,
 }
 
 /// Options of `twelvefold tiling`.
@@ -87,6 +144,16 @@ pub(crate) struct StippleOptions {
     /// The number drawn is close to this, not equal to it.
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]
     pub(crate) points: Option<u64>,
+
+    /// Exactly N dots, at most 10,000,000, in an order of which each beginning is itself a good
+    /// stippling.
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "points",
+        value_parser = clap::value_parser!(u64).range(..=MAX_EXACT)
+    )]
+    pub(crate) exact: Option<u64>,
 
     /// Chooses which of many equally good arrangements is drawn.
     #[arg(long, value_name = "SEED", default_value_t = 0)]

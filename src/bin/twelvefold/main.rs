@@ -3,6 +3,7 @@
 
 mod args;
 mod drawing;
+mod envmap;
 mod failure;
 mod figures;
 mod interrupt;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
+        Command::Envmap(options) => envmap::run(options),
         Command::Tables => tables::run(),
         Command::Tiling(options) => tiling::run(options),
         Command::Figures(options) => figures::run(options),

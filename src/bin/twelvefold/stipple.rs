@@ -6,7 +6,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError};
+use twelvefold::estimate::{Weighted, exactly};
+use twelvefold::{
+    Amount, Domain, ImageMap, InvalidPixels, Limits, Placement, Sample, Sampling, SamplingError,
+};
 
 use crate::args::{MAX_POINTS, StippleOptions};
 use crate::drawing::{Csv, Drawing, Png, Style, Svg};
@@ -27,7 +30,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let tone = Tone { linear: options.linear, invert: options.invert };
     let picture = picture::read(photo, tone).map_err(|error| of_photo(error.into()))?;
     let black = picture.total();
-    let points = match options.points {
+    let points = match options.points.or(options.exact) {
         Some(points) => points as f64,
         None => (black / AREA_PER_DOT).round().clamp(1.0, MAX_POINTS as f64),
     };
@@ -46,7 +49,8 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         linear: options.linear,
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
         description: format!(
-            "Stippled with about {points} dots by twelvefold {}, seed {}",
+            "Stippled with {}{points} dots by twelvefold {}, seed {}",
+            if options.exact.is_some() { "" } else { "about " },
             env!("CARGO_PKG_VERSION"),
             options.seed
         ),
@@ -58,19 +62,25 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let placement = Placement::new(map.domain(), options.seed);
     let sampling = Sampling::new(&placement, &map, Amount::Points(points))
         .map_err(|error| of_photo(error.into()))?;
+    let dots = match options.exact {
+        None => Dots::About(sampling),
+        Some(n) => exactly(&placement, &map, n as usize, Limits::default())
+            .map(|points| Dots::Exactly(points, map.domain()))
+            .map_err(|error| of_photo(error.into()))?,
+    };
 
     let mut progress = Progress::new(points, options.quiet);
     let drawn = match kind {
         Kind::Csv => Csv::new(&mut output)
             .map_err(DrawError::from)
-            .and_then(|csv| draw(&sampling, csv, &mut progress)),
+            .and_then(|csv| draw(&dots, csv, &mut progress)),
         Kind::Svg => Svg::new(&mut output, &style)
             .map_err(DrawError::from)
-            .and_then(|svg| draw(&sampling, svg, &mut progress)),
+            .and_then(|svg| draw(&dots, svg, &mut progress)),
         Kind::Png => {
             let png = Png::new(&mut output, &style)
                 .map_err(|error| Failure::at(&options.output, error))?;
-            draw(&sampling, png, &mut progress)
+            draw(&dots, png, &mut progress)
         }
     };
     let written = match drawn {
@@ -144,17 +154,44 @@ fn default_dot_size(density: f64) -> f64 {
     if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
 }
 
-/// Puts every point of `sampling` into `drawing`.
+/// Where the dots are.
+enum Dots<'a> {
+    About(Sampling<'a, ImageMap>),
+    /// These, in a photograph of this extent.
+    Exactly(Vec<Weighted>, Domain),
+}
+
+impl Dots<'_> {
+    /// Calls `visit` for each dot until it breaks.
+    fn visit(&self, mut visit: impl FnMut(DVec2) -> ControlFlow<()>) -> Result<(), SamplingError> {
+        match self {
+            Self::About(sampling) => sampling.visit(|point: Sample<DVec2>| visit(point.position)),
+            Self::Exactly(points, _) => {
+                // The error type is the other arm's: a slice has none.
+                let _ = points.iter().try_for_each(|point| visit(point.position));
+                Ok(())
+            }
+        }
+    }
+
+    fn domain(&self) -> Domain {
+        match self {
+            Self::About(sampling) => sampling.placement().domain(),
+            Self::Exactly(_, domain) => *domain,
+        }
+    }
+}
+
+/// Puts every dot into `drawing`.
 fn draw(
-    sampling: &Sampling<'_, ImageMap>,
+    dots: &Dots<'_>,
     mut drawing: impl Drawing,
     progress: &mut Progress,
 ) -> Result<(), DrawError> {
-    let end = sampling.placement().domain().max();
+    let end = dots.domain().max();
     let mut written = Ok(());
     // In 64 bits because 32 would be too few in a picture with sides of very different length.
-    sampling.visit(|point: Sample<DVec2>| {
-        let DVec2 { x, y } = point.position;
+    dots.visit(|DVec2 { x, y }| {
         written = drawing.dot(narrowed(x, end.x), narrowed(y, end.y));
         progress.point();
         if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
