@@ -59,11 +59,15 @@ mod domain;
 mod environment;
 pub mod estimate;
 pub mod importance;
+#[cfg(feature = "measure")]
+pub mod measure;
 #[cfg(test)]
 mod oracle;
 pub mod paper;
 mod placement;
 mod points;
+#[cfg(feature = "train")]
+pub mod relax;
 mod sampling;
 mod seed;
 mod tables;

@@ -4,6 +4,8 @@
 //! only.
 
 pub mod block;
+pub mod class;
+pub mod relaxation;
 pub mod wire;
 
 use alloc::vec::Vec;

@@ -35,6 +35,8 @@ pub(crate) enum Command {
     /// The map is a latitude-longitude image: the upper border is +z, and the left border and the
     /// quarter, half and three quarters of the width are +x, +y, -x and -y.
     Envmap(EnvmapOptions),
+    /// Train the relaxed offsets of `tables/relaxed.bin`, or measure those of a file.
+    Relax(RelaxOptions),
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
@@ -182,6 +184,39 @@ pub(crate) struct StippleOptions {
     pub(crate) scale: f64,
 
     /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of `twelvefold relax`.
+#[derive(Debug, Args)]
+pub(crate) struct RelaxOptions {
+    /// Where the trained table goes.
+    #[arg(short, long, value_name = "FILE", required_unless_present = "measure")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Measure this table instead of training one.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "tiny"])]
+    pub(crate) measure: Option<PathBuf>,
+
+    /// A digit assignment in the format of tables/digits.txt [default: the one inside this program].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) digits: Option<PathBuf>,
+
+    /// Chooses the places that are trained on. The same seed gives the same bytes with any number of
+    /// threads.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Threads to train with [default: one a processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+
+    /// Train for seconds only, on a coarse grid: to try the command, not to use the table.
+    #[arg(long)]
+    pub(crate) tiny: bool,
+
+    /// Neither show progress nor measure the result.
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }

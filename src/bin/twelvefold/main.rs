@@ -10,6 +10,7 @@ mod interrupt;
 mod output;
 mod picture;
 mod progress;
+mod relax;
 mod stipple;
 mod tables;
 mod tiling;
@@ -37,6 +38,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
         Command::Envmap(options) => envmap::run(options),
+        Command::Relax(options) => relax::run(options),
         Command::Tables => tables::run(),
         Command::Tiling(options) => tiling::run(options),
         Command::Figures(options) => figures::run(options),
