@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec2;
+use twelvefold::measure::Window;
 use twelvefold::tiling::TileType;
 
 /// The most dots that one run draws.
@@ -37,6 +39,13 @@ pub(crate) enum Command {
     Envmap(EnvmapOptions),
     /// Train the relaxed offsets of `tables/relaxed.bin`, or measure those of a file.
     Relax(RelaxOptions),
+    /// Measure how even a list of points is, as CSV.
+    ///
+    /// The table has the columns measure,value: star and L2 star discrepancy; least, first-percentile and
+    /// mean distance to the nearest point, in units of the hexagonal lattice's; mean power below half
+    /// the principal frequency, white noise = 1. With --image also, relative to the photograph's
+    /// darkness: the variance of counts in blocks of 64 points, Poisson = 1, and local distances.
+    Measure(MeasureOptions),
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
@@ -49,6 +58,55 @@ pub(crate) enum Command {
     Tiling(TilingOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
+}
+
+/// Options of `twelvefold measure`.
+#[derive(Debug, Args)]
+pub(crate) struct MeasureOptions {
+    /// The points: one a line, two coordinates, or columns named x and y.
+    pub(crate) points: PathBuf,
+
+    /// The rectangle in which the points are measured, as X,Y,WIDTH,HEIGHT [default: the photograph of
+    /// --image, or 0,0,1,1]. Points outside serve as neighbours only.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = window, allow_hyphen_values = true)]
+    pub(crate) window: Option<Window>,
+
+    /// A photograph whose darkness the points should follow.
+    #[arg(long, value_name = "PHOTO")]
+    pub(crate) image: Option<PathBuf>,
+
+    /// The points follow the photograph's light parts.
+    #[arg(long, requires = "image")]
+    pub(crate) invert: bool,
+
+    /// The points follow linear light.
+    #[arg(long, requires = "image")]
+    pub(crate) linear: bool,
+
+    /// Where the table goes [default: standard output].
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Also draw the periodogram as a PNG picture: up to twice the principal frequency on each axis.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) spectrum: Option<PathBuf>,
+
+    /// Also write the periodogram's radial mean as CSV.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) rings: Option<PathBuf>,
+}
+
+/// Reads a rectangle.
+fn window(text: &str) -> Result<Window, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, width, height]
+            if numbers.iter().all(|n| n.is_finite()) && width > 0.0 && height > 0.0 =>
+        {
+            Ok(Window::new(DVec2::new(x, y), DVec2::new(width, height)))
+        }
+        _ => Err("not four finite numbers X,Y,WIDTH,HEIGHT with a size above zero".to_owned()),
+    }
 }
 
 /// Options of `twelvefold envmap`.

@@ -7,8 +7,10 @@ mod envmap;
 mod failure;
 mod figures;
 mod interrupt;
+mod measure;
 mod output;
 mod picture;
+mod point_list;
 mod progress;
 mod relax;
 mod stipple;
@@ -39,6 +41,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
         Command::Stipple(options) => stipple::run(options),
         Command::Envmap(options) => envmap::run(options),
         Command::Relax(options) => relax::run(options),
+        Command::Measure(options) => measure::run(options),
         Command::Tables => tables::run(),
         Command::Tiling(options) => tiling::run(options),
         Command::Figures(options) => figures::run(options),
