@@ -46,6 +46,10 @@ pub(crate) enum Command {
     /// the principal frequency, white noise = 1. With --image also, relative to the photograph's
     /// darkness: the variance of counts in blocks of 64 points, Poisson = 1, and local distances.
     Measure(MeasureOptions),
+    /// Measure error and time of this program's samples and of others in use.
+    ///
+    /// Writes report.md, report.csv and a picture for each scene. Takes some minutes.
+    Report(ReportOptions),
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
@@ -58,6 +62,30 @@ pub(crate) enum Command {
     Tiling(TilingOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
+}
+
+/// Options of `twelvefold report`.
+#[derive(Debug, Args)]
+pub(crate) struct ReportOptions {
+    /// The folder for the report, made if missing; files of the same names are replaced.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+
+    /// Environment maps, beside three built-in skies; negative radiance counts as zero.
+    #[arg(long = "environment", value_name = "MAP")]
+    pub(crate) environments: Vec<PathBuf>,
+
+    /// The photograph whose tone is followed [default: a drawing].
+    #[arg(long, value_name = "PHOTO")]
+    pub(crate) photo: Option<PathBuf>,
+
+    /// The greatest number of samples: smaller is sooner done.
+    #[arg(long, value_name = "N", default_value_t = 65_536)]
+    pub(crate) samples: usize,
+
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 /// Options of `twelvefold measure`.

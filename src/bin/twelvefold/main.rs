@@ -13,6 +13,7 @@ mod picture;
 mod point_list;
 mod progress;
 mod relax;
+mod report;
 mod stipple;
 mod tables;
 mod tiling;
@@ -42,6 +43,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
         Command::Envmap(options) => envmap::run(options),
         Command::Relax(options) => relax::run(options),
         Command::Measure(options) => measure::run(options),
+        Command::Report(options) => report::run(options),
         Command::Tables => tables::run(),
         Command::Tiling(options) => tiling::run(options),
         Command::Figures(options) => figures::run(options),
