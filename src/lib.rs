@@ -48,10 +48,16 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
+#[cfg(test)]
+mod accuracy;
 pub mod bake;
 mod clip;
 mod domain;
+mod environment;
+pub mod estimate;
 pub mod importance;
 #[cfg(feature = "measure")]
 pub mod measure;
@@ -72,9 +78,10 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
+pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
 pub use importance::{
-    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView,
-    Probed, StippleMap,
+    BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData,
+    PixelView, Probed, StippleMap,
 };
 #[cfg(feature = "parallel")]
 pub use parallel::Shards;

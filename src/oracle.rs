@@ -308,6 +308,29 @@ mod tests {
     }
 
     #[test]
+    fn thresholds_on_just_below_and_just_above_tile_counts_and_ranks_agree_with_the_oracle() {
+        let domain = Domain::unit();
+        for seed in 0..3 {
+            let placement = Placement::new(domain, seed);
+            let any = Sampling::new(&placement, &Constant::ONE, Amount::Points(1.0)).unwrap();
+            let counts = TileCounts::HEXAGON.all();
+            let ranks = points(&any.with_scale(counts[6] as f64, 0.0));
+            let some_ranks = ranks.iter().skip(seed as usize).step_by(41).map(|(rank, _)| *rank);
+            for integer in some_ranks.chain(counts[4..=6].iter().copied()) {
+                let t = integer as f64;
+                for t in [t.next_down(), t, t.next_up(), t + 1.0] {
+                    let sampling = any.with_scale(t, 0.0);
+                    assert_eq!(sampled(&sampling), points(&sampling), "T = {t}");
+                }
+                // The point of rank k appears as soon as T passes k.
+                let present = |t| sampled(&any.with_scale(t, 0.0)).iter().any(|p| p.0 == integer);
+                assert!(!present(t));
+                assert_eq!(present(t.next_up()), ranks.iter().any(|p| p.0 == integer));
+            }
+        }
+    }
+
+    #[test]
     fn the_frontier_is_every_tile_that_reaches_the_domain() {
         use crate::placement::{FRONTIER_LEVEL, REACH};
         let rules = Tables::built_in().rules();

@@ -7,10 +7,15 @@ use crate::walk::chunk::Chunk;
 use crate::walk::either::AnyTraversal;
 use crate::walk::scalar::Position;
 
-/// A point of the set.
+/// A point of the set. [`Sampling::weighted`] adds what estimates need: density and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<P> {
     /// Where it is, in the caller's units, inside the half-open domain.
+    ///
+    /// Relative to the domain's least corner, each coordinate is within 3 units in the last place of
+    /// the domain's diagonal (3ε · 2^⌊log₂ diagonal⌋, ε = 2⁻²³ for `Vec2` and 2⁻⁵² for `DVec2`) of exact
+    /// arithmetic, at every level; the largest error met in the tests is 2.5. A corner other than the
+    /// origin adds the rounding of that sum.
     pub position: P,
     /// Its index in the placement's endless sequence. Unique in a placement, and the same at every
     /// density at which the point is present.

@@ -4,6 +4,7 @@
 //! which a [`Sampling`](crate::Sampling) derives from the wanted [`Amount`](crate::Amount). Units of
 //! importance are the caller's; only ratios matter when a count is asked for.
 
+mod bilinear;
 mod constant;
 mod function;
 mod lookup;
@@ -12,8 +13,10 @@ mod pixels;
 mod probed;
 mod pyramid;
 mod stipple;
+pub(crate) mod sums;
 mod view;
 
+pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};

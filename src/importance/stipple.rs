@@ -18,7 +18,7 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::{ImageMap, Importance, InvalidPixels, MapError};
+use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError};
 use crate::domain::{Domain, Region};
 
 /// Half-side, in spacings, of the box whose mean decides on acceptance.
@@ -51,7 +51,7 @@ pub struct StippleMap {
     height: usize,
     /// The image itself.
     importance: Vec<f32>,
-    acceptance: ImageMap,
+    acceptance: BilinearMap,
     phase: Vec<f32>,
     /// 0 … 255.
     detail: Vec<u8>,
@@ -88,6 +88,7 @@ impl StippleMap {
         };
         let Planes { acceptance, phase, detail } = Planes::new(&importance, width, height, &scales);
         let acceptance = ImageMap::new(width, height, acceptance, InvalidPixels::Reject)?;
+        let acceptance = BilinearMap::new(acceptance);
         let Scales { spacing_of_one, largest: largest_spacing, .. } = scales;
         Ok(Self {
             width,
@@ -104,7 +105,7 @@ impl StippleMap {
     /// The rectangle that the image covers.
     #[must_use]
     pub fn domain(&self) -> Domain {
-        self.acceptance.domain()
+        self.acceptance.map().domain()
     }
 
     /// Between the centres of the four pixels around a point, the border's beyond the image.
@@ -203,17 +204,15 @@ impl Planes {
 
 impl Importance for StippleMap {
     fn value(&self, at: DVec2) -> f64 {
-        self.bilinear(self.acceptance.pixels(), at)
+        self.acceptance.value(at)
     }
 
     fn upper_bound(&self, region: &Region) -> f64 {
-        // Values depend on the pixels whose centres lie less than one pixel away; a little more than
-        // half a pixel from the square's border outruns rounding.
-        self.acceptance.upper_bound(&Region { radius: region.radius + 0.500_001, ..*region })
+        self.acceptance.upper_bound(region)
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
-        (*domain == self.domain()).then(|| self.acceptance.mean() * domain.area())
+        self.acceptance.integral(domain)
     }
 
     fn local(&self, at: DVec2) -> f64 {

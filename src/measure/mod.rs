@@ -12,8 +12,10 @@
 //!
 //! A [`Window`] keeps borders from biasing: points outside it serve as neighbours only.
 
+pub mod discrepancy;
 pub mod fidelity;
 pub mod nearest;
+pub mod periodogram;
 pub mod spectrum;
 
 use glam::DVec2;

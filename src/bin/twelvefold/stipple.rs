@@ -2,13 +2,13 @@
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
+use twelvefold::estimate::exactly;
 use twelvefold::{
-    Amount, ImageMap, Importance, InvalidPixels, Placement, Sample, Sampling, SamplingError,
-    StippleMap,
+    Amount, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Sample, Sampling,
+    SamplingError, StippleMap,
 };
 
 use crate::args::{Centres, MAX_POINTS, StippleOptions};
@@ -30,7 +30,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let tone = Tone { linear: options.linear, invert: options.invert };
     let picture = picture::read(photo, tone).map_err(|error| of_photo(error.into()))?;
     let black = picture.total();
-    let points = match options.points {
+    let points = match options.points.or(options.exact) {
         Some(points) => points as f64,
         None => (black / AREA_PER_DOT).round().clamp(1.0, MAX_POINTS as f64),
     };
@@ -49,7 +49,8 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         linear: options.linear,
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
         description: format!(
-            "Stippled with about {points} dots by twelvefold {}, seed {}",
+            "Stippled with {}{points} dots by twelvefold {}, seed {}",
+            if options.exact.is_some() { "" } else { "about " },
             env!("CARGO_PKG_VERSION"),
             options.seed
         ),
@@ -58,23 +59,33 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let mut progress = Progress::new(points, options.quiet);
     let (width, height, pixels) = (picture.width, picture.height, picture.importance);
     let invalid = InvalidPixels::Reject;
-    let drawn = match options.centres {
-        Centres::Fixed => {
+    let to = (&mut output, &style, &mut progress);
+    let drawn = match (options.exact, options.centres.unwrap_or(Centres::Relaxed)) {
+        (Some(n), _) => {
             let map = ImageMap::new(width, height, pixels, invalid)
                 .map_err(|error| of_photo(error.into()))?;
             let placement = Placement::new(map.domain(), options.seed);
-            let sampling = Sampling::new(&placement, &map, Amount::Points(points))
+            let dots = exactly(&placement, &map, n as usize, Limits::default())
                 .map_err(|error| of_photo(error.into()))?;
-            draw_as(kind, &sampling, &style, &mut output, &mut progress)
+            let mut positions = dots.iter().map(|dot| Ok(dot.position));
+            draw_as(kind, &mut positions, map.domain(), to)
         }
-        Centres::Relaxed => {
+        (None, Centres::Fixed) => {
+            let map = ImageMap::new(width, height, pixels, invalid)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(points));
+            let sampling = sampling.map_err(|error| of_photo(error.into()))?;
+            draw_sampling(kind, &sampling, to)
+        }
+        (None, Centres::Relaxed) => {
             let map = StippleMap::new(width, height, pixels, invalid, points)
                 .map_err(|error| of_photo(error.into()))?;
             let placement = Placement::new(map.domain(), options.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(points))
                 .and_then(Sampling::relaxed)
                 .map_err(|error| of_photo(error.into()))?;
-            draw_as(kind, &sampling, &style, &mut output, &mut progress)
+            draw_sampling(kind, &sampling, to)
         }
     };
     let written = match drawn {
@@ -152,40 +163,51 @@ fn default_dot_size(density: f64) -> f64 {
     if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
 }
 
+/// Where drawn dots go: the file, how they look, and who is told of them.
+type Target<'a> = (&'a mut Output, &'a Style, &'a mut Progress);
+
 /// Draws every point of `sampling` as a file of this kind.
-fn draw_as(
+fn draw_sampling(
     kind: Kind,
     sampling: &Sampling<'_, impl Importance>,
-    style: &Style,
-    output: &mut Output,
-    progress: &mut Progress,
+    to: Target<'_>,
+) -> Result<(), DrawError> {
+    // In 64 bits because 32 would be too few in a picture with sides of very different length.
+    let mut positions =
+        sampling.points()?.map(|point| point.map(|Sample::<DVec2> { position, .. }| position));
+    draw_as(kind, &mut positions, sampling.placement().domain(), to)
+}
+
+/// Draws dots as a file of this kind.
+fn draw_as(
+    kind: Kind,
+    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
+    domain: Domain,
+    (output, style, progress): Target<'_>,
 ) -> Result<(), DrawError> {
     match kind {
-        Kind::Csv => draw(sampling, Csv::new(output)?, progress),
-        Kind::Svg => draw(sampling, Svg::new(output, style)?, progress),
+        Kind::Csv => draw(positions, domain, Csv::new(output)?, progress),
+        Kind::Svg => draw(positions, domain, Svg::new(output, style)?, progress),
         Kind::Png => {
             let png = Png::new(output, style).map_err(DrawError::Picture)?;
-            draw(sampling, png, progress)
+            draw(positions, domain, png, progress)
         }
     }
 }
 
-/// Puts every point of `sampling` into `drawing`.
+/// Puts every dot into `drawing`.
 fn draw(
-    sampling: &Sampling<'_, impl Importance>,
+    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
+    domain: Domain,
     mut drawing: impl Drawing,
     progress: &mut Progress,
 ) -> Result<(), DrawError> {
-    let end = sampling.placement().domain().max();
-    let mut written = Ok(());
-    // In 64 bits because 32 would be too few in a picture with sides of very different length.
-    sampling.visit(|point: Sample<DVec2>| {
-        let DVec2 { x, y } = point.position;
-        written = drawing.dot(narrowed(x, end.x), narrowed(y, end.y));
+    let end = domain.max();
+    for position in positions {
+        let DVec2 { x, y } = position?;
+        drawing.dot(narrowed(x, end.x), narrowed(y, end.y))?;
         progress.point();
-        if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    })?;
-    written?;
+    }
     Ok(drawing.finish()?)
 }
 
