@@ -1,4 +1,50 @@
-//! twelvefold
+//! Well-spread points with a density you control, from tables baked at build time.
+//!
+//! twelvefold places points by Ostromoukhov's dodecagonal tiling: four tile types subdivide into each
+//! other for ever; every tile gives one point and a rank; a point is accepted where the importance
+//! reaches its rank. The result is a point set that is evenly spread at any density, follows an
+//! importance map, and is the same, bit for bit, on every machine.
+//!
+//! ```
+//! use glam::Vec2;
+//! use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sampling};
+//!
+//! // A 3 × 2 importance map: nothing on the left, four times as much below as above on the right.
+//! let pixels = vec![0.0, 1.0, 1.0, 0.0, 4.0, 4.0];
+//! let map = ImageMap::new(3, 2, pixels, InvalidPixels::Reject)?;
+//! let placement = Placement::new(map.domain(), 42); // a domain and a seed; keep it across frames
+//! let sampling = Sampling::new(&placement, &map, Amount::Points(1000.0))?;
+//!
+//! let mut buffer = [Vec2::ZERO; 1200]; // nothing is allocated
+//! let filled = sampling.fill(&mut buffer)?;
+//! assert!(filled.complete && filled.written.abs_diff(1000) < 30);
+//! assert!(buffer[..filled.written].iter().all(|p| p.x >= 1.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The way of a point
+//!
+//! 1. [`tiling`]: exact integers only. Coordinates in `Z[ζ₁₂]`, production rules, ranks, F-codes.
+//! 2. [`bake`]: `build.rs` subdivides each tile type to a fixed depth and bakes offsets and thresholds;
+//!    [`Tables`] views them where they lie.
+//! 3. [`Placement`]: a seed puts the [`Domain`] somewhere in a root tile at least 128 times as wide.
+//! 4. [`Importance`]: value at a point, upper bound over a region. [`Constant`], [`ImageMap`],
+//!    [`Function`], or your own.
+//! 5. [`Sampling`]: descends only where a point can be accepted, and reads blocks of points from the
+//!    tables. Received by [`fill`](Sampling::fill), [`visit`](Sampling::visit) or
+//!    [`points`](Sampling::points).
+//!
+//! # Promises
+//!
+//! The same crate version, tables, domain, seed, importance and amount give the same points on every
+//! platform, whatever the baked depth. Decisions compare integers, or floating-point numbers that only
+//! ever came from +, −, ×, ÷ and √. No function panics on any input; mistakes are error values that
+//! say where they are. The library contains no `unsafe` code.
+//!
+//! # Features
+//!
+//! `cli` (default) builds the program and brings its dependencies; libraries want
+//! `default-features = false`, which needs `alloc` only. `std` lets glam and serde use `std`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;

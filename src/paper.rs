@@ -92,53 +92,101 @@ pub fn delta_fraction(code: &FCode) -> f64 {
 /// The normalized threshold: exact rank over the number of tiles of the level, in [0, 1).
 #[must_use]
 pub fn normalized_threshold(code: &FCode) -> f64 {
-    // A code has at most MAX_LEVEL digits, so the count exists.
+    // A code has at most MAX_LEVEL digits, so the count exists. From level 14 on the last ranks round
+    // to the count itself.
     TileCounts::of(code.root())
         .at(code.level())
-        .map_or(0.0, |tiles| code.rank() as f64 / tiles as f64)
+        .map_or(0.0, |tiles| (code.rank() as f64 / tiles as f64).min(JUST_BELOW_ONE))
 }
+
+/// The largest `f64` below 1.
+const JUST_BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// Ψ(x) = log_δ(x) mod 1 in [0, 1) for positive finite x: how far a density lies between two whole
 /// levels. `None` for anything else.
 ///
-/// Decided exactly at the powers of δ as `f64` represents them: the whole part is found by dividing,
-/// never by taking a logarithm, which is wrong at one ulp either side of δ^k for most k.
+/// The level, where Ψ falls from 1 to 0, is decided exactly for every `f64`, subnormal ones included:
+/// the whole part is found by comparing with powers of δ of twice the precision. A logarithm gets it
+/// wrong at one ulp either side of δ^k for most k.
 #[must_use]
 pub fn psi(x: f64) -> Option<f64> {
     if !(x > 0.0 && x.is_finite()) {
         return None;
     }
-    let reduced = reduce_to_one_level(x);
-    let psi = libm::log(reduced) / libm::log(DELTA);
-    // One ulp below δ^k the quotient may round to δ itself.
-    Some(psi.clamp(0.0, 1.0 - f64::EPSILON / 2.0))
+    let psi = libm::log(reduce_to_one_level(x)) / libm::log(DELTA);
+    // x/δ^k rounds to δ when x lies an ulp below δ^(k+1), and may round below 1 at δ^k itself.
+    Some(psi.clamp(0.0, JUST_BELOW_ONE))
 }
 
-/// x·δ^−k in [1, δ): one division by the largest δ^k ≤ x, so that no error accumulates.
+/// x/δ^k for the k that puts it in [1, δ) before rounding.
 fn reduce_to_one_level(x: f64) -> f64 {
-    let mut power = 1.0;
-    if x >= 1.0 {
-        while power * DELTA <= x {
-            power *= DELTA;
+    // A power of two takes x so far from the ends of the exponent range that no product of the search
+    // overflows or loses its low part.
+    let step = if x < 1.0 { Power::INVERSE_OF_DELTA } else { Power::DELTA };
+    let scale = if x < 1.0 { SCALE } else { 1.0 / SCALE };
+    let scaled = x * scale;
+    let mut power = Power { high: scale, low: 0.0 };
+    if x < 1.0 {
+        while !power.is_at_most(scaled) {
+            power = power.times(step);
         }
-        return x / power;
+    } else {
+        loop {
+            let next = power.times(step);
+            if !next.is_at_most(scaled) {
+                break;
+            }
+            power = next;
+        }
     }
-    // 1/δ^k instead of δ^−k keeps the divisor a plain product here too.
-    while x * power < 1.0 {
-        power *= DELTA;
-    }
-    x * power
+    scaled / power.high
 }
 
-/// The paper's κ of equation 8, ⌈log_δ(x)⌉ for x > 1 and 0 up to 1, by comparison with the exact tile
-/// counts rather than with rounded powers: the first level with at least `x` tiles under root `a`.
+/// 2⁵¹².
+const SCALE: f64 = f64::from_bits((1023 + 512) << 52);
+
+/// A power of δ as the unevaluated sum of a rounded value and its rounding error.
+#[derive(Clone, Copy)]
+struct Power {
+    high: f64,
+    low: f64,
+}
+
+impl Power {
+    const DELTA: Self = Self { high: DELTA, low: 4.014_033_688_722_761e-16 };
+    /// 7 − 4√3.
+    const INVERSE_OF_DELTA: Self = Self { high: LAMBDA_2, low: 1.052_477_554_343_139_8e-18 };
+
+    /// The product, with a relative error near 2⁻¹⁰⁴.
+    fn times(self, other: Self) -> Self {
+        let product = self.high * other.high;
+        let error = libm::fma(self.high, other.high, -product)
+            + (self.high * other.low + self.low * other.high);
+        let high = product + error;
+        Self { high, low: error - (high - product) }
+    }
+
+    /// Whether the power is at most `x`. `high` is the `f64` nearest to the power, so the sign of `low`
+    /// matters only when `high` is `x`. The tolerance exceeds the errors of the 270 products that a
+    /// search takes at most; a test proves that the only power of δ within it of an `f64` is δ¹⁴, which
+    /// is δ^−14 below an integer.
+    fn is_at_most(self, x: f64) -> bool {
+        const TOLERANCE: f64 = f64::from_bits((1023 - 95) << 52);
+        self.high < x || (self.high == x && self.low <= TOLERANCE * self.high)
+    }
+}
+
+/// The paper's κ of equation 8 with the exact tile counts in place of powers of δ: the first level
+/// with at least `x` tiles under root `a`, hence 0 for x ≤ 1.
 ///
 /// # Errors
-/// [`RankError::TooDeep`] when no level within [`MAX_LEVEL`] has that many.
+/// [`RankError::TooDeep`] when no level within [`MAX_LEVEL`] has that many, or `x` is not a number.
 pub fn kappa(x: f64) -> Result<usize, RankError> {
     TileCounts::HEXAGON
         .all()
         .iter()
-        .position(|tiles| *tiles as f64 >= x)
+        // The conversion saturates at u64::MAX, past every count, so huge `x` match none. In floating
+        // point the counts from level 14 on would be rounded.
+        .position(|tiles| !x.is_nan() && *tiles >= libm::ceil(x) as u64)
         .ok_or(RankError::TooDeep { level: MAX_LEVEL + 1 })
 }

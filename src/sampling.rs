@@ -200,7 +200,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
         let bound = importance.upper_bound(&region);
         sampling.rank_limit_of_bound(bound, &region)?;
         let expected = expected.unwrap_or(bound * density * domain.area());
-        if !(expected <= limits.points as f64) {
+        // Finite: the bound and the amount are, and an overflow of their product is past any limit.
+        if expected.is_nan() || expected > limits.points as f64 {
             return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
         }
         Ok(sampling)

@@ -166,7 +166,7 @@ fn admit(row: &mut [f32], invalid: InvalidPixels) -> Result<f64, (usize, f32)> {
     let mut sum = 0.0;
     for (x, pixel) in row.iter_mut().enumerate() {
         let value = *pixel;
-        if !(value >= 0.0 && value < f32::INFINITY) {
+        if !(0.0..f32::INFINITY).contains(&value) {
             match invalid {
                 InvalidPixels::ZeroAll => *pixel = 0.0,
                 InvalidPixels::ZeroNegative if value < 0.0 && value.is_finite() => *pixel = 0.0,

@@ -74,11 +74,6 @@ impl MaxPyramid {
         }
         max
     }
-
-    /// The largest pixel of all.
-    pub(super) fn top(&self, pixels: &[f32]) -> f32 {
-        self.texels.last().or(pixels.first()).copied().unwrap_or(0.0)
-    }
 }
 
 /// Maxima of 2×2 blocks of two rows; the last block of an odd row is 1 wide.
@@ -106,7 +101,7 @@ mod tests {
                 let mut pixels = alloc::vec![0.0f32; width * height];
                 pixels[hot] = 1.0;
                 let pyramid = MaxPyramid::new(&pixels, width, height);
-                assert_eq!(pyramid.top(&pixels), 1.0);
+                assert_eq!(pyramid.max(&pixels, width, [0, width - 1], [0, height - 1]), 1.0);
                 let (x, y) = (hot % width, hot / width);
                 for x0 in 0..width {
                     for x1 in [x0, (x0 + 3).min(width - 1), width - 1] {

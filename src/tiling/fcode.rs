@@ -5,7 +5,8 @@ use core::fmt;
 use super::counts::MAX_LEVEL;
 use super::tile::TileType;
 
-/// A possible word of digits under a root type, at most [`MAX_LEVEL`] long.
+/// A possible word of digits under a root type, at most [`MAX_LEVEL`] long. Two codes are equal when
+/// root and digits are: leading zeros count, for each is a level.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FCode {
     root: TileType,
@@ -67,8 +68,8 @@ impl FCode {
     /// Reads digits 0-9, A-D (or a-d), newest first. The empty text is the root itself.
     ///
     /// # Errors
-    /// [`FCodeError`] with the position of the first mistake from the left; a text that is too long
-    /// is reported first.
+    /// [`FCodeError`]: a text that is too long is reported first, then the first character from the
+    /// left that is no digit, then the first impossible D.
     pub fn parse(root: TileType, text: &str) -> Result<Self, FCodeError> {
         let length = text.chars().count();
         if length > MAX_LEVEL {

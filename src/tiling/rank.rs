@@ -33,6 +33,13 @@ pub enum RankError {
         /// The number of tiles.
         tiles: u64,
     },
+    /// The tile with this rank has no child with this digit.
+    NoSuchChild {
+        /// The rank.
+        rank: u64,
+        /// The digit; 13 (D) when the tile is of type `a`.
+        digit: u8,
+    },
 }
 
 impl fmt::Display for RankError {
@@ -44,6 +51,9 @@ impl fmt::Display for RankError {
             Self::NoSuchRank { rank, tiles } => {
                 write!(f, "rank {rank} is not below {tiles}, the number of tiles of its level")
             }
+            Self::NoSuchChild { rank, digit } => {
+                write!(f, "the tile of rank {rank} has no child with digit {digit}")
+            }
         }
     }
 }
@@ -53,20 +63,26 @@ impl core::error::Error for RankError {}
 /// The rank of the child with `digit` (0..14) of a level-`level` tile with rank `parent`.
 ///
 /// # Errors
-/// [`RankError::TooDeep`] when the child's level is past [`MAX_LEVEL`].
+/// [`RankError::TooDeep`] when the child's level is past [`MAX_LEVEL`]; [`RankError::NoSuchRank`] when
+/// the parent's level has no such rank; [`RankError::NoSuchChild`] when the parent has no such digit.
 pub fn child_rank(
     counts: &TileCounts,
     level: usize,
     parent: u64,
     digit: u8,
 ) -> Result<u64, RankError> {
-    counts.at(level + 1)?;
+    counts.at(level.saturating_add(1))?;
     let tiles = counts.at(level)?;
-    Ok(if digit < 13 {
-        u64::from(digit) * tiles + parent
-    } else {
-        13 * tiles + parent - counts.before(level)?
-    })
+    let hexagons = counts.before(level)?;
+    if parent >= tiles {
+        return Err(RankError::NoSuchRank { rank: parent, tiles });
+    }
+    match digit {
+        // Below 14·N_m, which fits: N₁₆ does, and N₁₆ ≥ 13·N₁₅.
+        0..=12 => Ok(u64::from(digit) * tiles + parent),
+        13 if parent >= hexagons => Ok(13 * tiles + (parent - hexagons)),
+        _ => Err(RankError::NoSuchChild { rank: parent, digit }),
+    }
 }
 
 /// The digit and the parent's rank of the level-`level` tile with this rank, `level` ≥ 1.
@@ -85,7 +101,7 @@ impl FCode {
     pub fn rank(&self) -> u64 {
         let counts = TileCounts::of(self.root());
         self.oldest_first().enumerate().fold(0, |parent, (level, digit)| {
-            // An `FCode` has at most MAX_LEVEL digits and no impossible word.
+            // Never an error: an `FCode` has at most MAX_LEVEL digits and no impossible word.
             child_rank(counts, level, parent, digit).unwrap_or(parent)
         })
     }

@@ -118,7 +118,7 @@ impl Rules {
         let offset = child.offset.checked_rotate(tile.rotation)?;
         Ok(Some(Tile {
             kind: child.kind,
-            rotation: (tile.rotation + child.rotation) % 12,
+            rotation: (tile.rotation % 12 + child.rotation) % 12,
             centre: tile.centre.checked_mul_lambda()?.checked_add(offset)?,
         }))
     }

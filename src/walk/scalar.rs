@@ -31,6 +31,7 @@ macro_rules! scalar {
                 value as $float
             }
             #[inline(always)]
+            #[allow(clippy::cast_lossless, reason = "exact for f64, rounded for f32")]
             fn from_i32(value: i32) -> Self {
                 value as $float
             }

@@ -3,7 +3,9 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use twelvefold::tiling::TileType;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
@@ -25,6 +27,47 @@ pub(crate) enum Command {
     Relax(RelaxOptions),
     /// Say what the tables inside this program hold.
     Tables,
+    /// List every tile of one level of the tiling as CSV.
+    ///
+    /// The columns are fcode,tile,rotation,z0,z1,z2,z3,rank,threshold,x,y: the tile's address, newest
+    /// digit first; its type; its rotation in units of 30°, 0 to 11; its centre z0 + z1·ζ + z2·ζ² +
+    /// z3·ζ³, ζ = e^(iπ/6), in edges of its own level; its rank; rank over the number of tiles; and
+    /// the centre again in edges of the root. The root's centre is the origin. Tiles are listed depth
+    /// first, children by ascending digit.
+    Tiling(TilingOptions),
+    /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
+    Figures(FiguresOptions),
+}
+
+/// Options of `twelvefold tiling`.
+#[derive(Debug, Args)]
+pub(crate) struct TilingOptions {
+    /// The type of the root tile.
+    #[arg(long, value_name = "TYPE", value_parser = tile_type())]
+    pub(crate) root: TileType,
+
+    /// How many times the root is subdivided, at most 16.
+    #[arg(long, value_name = "K")]
+    pub(crate) levels: usize,
+
+    /// Where the list goes [default: standard output, as for `-`].
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Options of `twelvefold figures`.
+#[derive(Debug, Args)]
+pub(crate) struct FiguresOptions {
+    /// The folder for the seven files, made if missing; files of the same names are replaced.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
+
+/// Reads the letter of a tile type.
+fn tile_type() -> impl TypedValueParser<Value = TileType> {
+    PossibleValuesParser::new(["a", "b", "c", "d"]).try_map(|name| {
+        name.chars().next().and_then(TileType::from_letter).ok_or("not a tile type")
+    })
 }
 
 /// Options of `twelvefold stipple`.

@@ -4,12 +4,15 @@
 mod args;
 mod drawing;
 mod failure;
+mod figures;
+mod interrupt;
 mod output;
 mod picture;
 mod progress;
 mod relax;
 mod stipple;
 mod tables;
+mod tiling;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -35,5 +38,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
         Command::Stipple(options) => stipple::run(options),
         Command::Relax(options) => relax::run(options),
         Command::Tables => tables::run(),
+        Command::Tiling(options) => tiling::run(options),
+        Command::Figures(options) => figures::run(options),
     }
 }

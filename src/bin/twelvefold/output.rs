@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{NamedTempFile, TempPath};
 
+use crate::interrupt::Unfinished;
+
 /// An open result. Write to it, then [`commit`](Output::commit) it; dropped without a commit, it
 /// leaves the folder as it was.
 #[derive(Debug)]
@@ -23,6 +25,7 @@ enum Sink {
         file: File,
         temporary: TempPath,
         target: PathBuf,
+        unfinished: Unfinished,
     },
     /// An existing device or pipe, which is written in place: renaming would put a file where it was.
     InPlace(File),
@@ -146,7 +149,8 @@ impl Output {
             temporary.as_file().set_permissions(permissions)?;
         }
         let (file, temporary) = temporary.into_parts();
-        Ok(Self { sink: Sink::Whole { file, temporary, target } })
+        let unfinished = Unfinished::new(&temporary);
+        Ok(Self { sink: Sink::Whole { file, temporary, target, unfinished } })
     }
 
     /// Makes everything written so far the content of the target.
@@ -155,12 +159,13 @@ impl Output {
     /// The system's, when what was written cannot be stored or renamed; the target is then as before.
     pub(crate) fn commit(self) -> Result<(), OutputError> {
         match self.sink {
-            Sink::Whole { file, temporary, target } => {
+            Sink::Whole { file, temporary, target, unfinished } => {
                 // Some file systems report a full disk only here, and a rename that overtakes the
                 // data would leave an empty file after a power cut.
                 file.sync_all()?;
                 drop(file);
                 temporary.persist(target).map_err(|failure| failure.error)?;
+                drop(unfinished);
             }
             Sink::InPlace(mut file) => file.flush()?,
             Sink::Standard(mut stdout) => stdout.flush()?,

@@ -36,7 +36,7 @@ impl Progress {
     /// Counts one point.
     pub(crate) fn point(&mut self) {
         self.points += 1;
-        if self.wanted && self.points % STRIDE == 0 {
+        if self.wanted && self.points.is_multiple_of(STRIDE) {
             self.show();
         }
     }

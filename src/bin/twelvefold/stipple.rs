@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write as _};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use glam::Vec2;
+use glam::DVec2;
 use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError};
 
 use crate::args::{MAX_POINTS, StippleOptions};
@@ -76,7 +76,10 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let written = match drawn {
         Ok(()) => output.commit(),
         Err(DrawError::Write(error)) => Err(error.into()),
-        Err(DrawError::Sampling(error)) => return Err(of_photo(error.into())),
+        Err(DrawError::Sampling(error)) => {
+            progress.finish();
+            return Err(of_photo(error.into()));
+        }
     };
     let (points, time) = progress.finish();
     match written {
@@ -147,14 +150,23 @@ fn draw(
     mut drawing: impl Drawing,
     progress: &mut Progress,
 ) -> Result<(), DrawError> {
+    let end = sampling.placement().domain().max();
     let mut written = Ok(());
-    sampling.visit(|point: Sample<Vec2>| {
-        written = drawing.dot(point.position.x, point.position.y);
+    // In 64 bits because 32 would be too few in a picture with sides of very different length.
+    sampling.visit(|point: Sample<DVec2>| {
+        let DVec2 { x, y } = point.position;
+        written = drawing.dot(narrowed(x, end.x), narrowed(y, end.y));
         progress.point();
         if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     })?;
     written?;
     Ok(drawing.finish()?)
+}
+
+/// The 32-bit float nearest to `coordinate` of those below `end`.
+fn narrowed(coordinate: f64, end: f64) -> f32 {
+    let narrow = coordinate as f32;
+    if f64::from(narrow) < end { narrow } else { narrow.next_down() }
 }
 
 /// Why drawing stopped.
@@ -205,6 +217,15 @@ mod tests {
         for none in ["svg", ".png", "x.jpg", "x.", "png/x"] {
             assert_eq!(Kind::of(Path::new(none)), None, "{none}");
         }
+    }
+
+    #[test]
+    fn rounding_never_carries_a_dot_onto_the_open_border() {
+        for end in [1.0, 451.0, 4000.0, 16_777_217.0, 1e8 + 1.0] {
+            let narrow = narrowed(f64::next_down(end), end);
+            assert!(f64::from(narrow) < end && f64::from(narrow.next_up()) >= end, "{end}");
+        }
+        assert_eq!(narrowed(0.1, 1.0), 0.1);
     }
 
     #[test]

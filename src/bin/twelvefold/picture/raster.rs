@@ -1,7 +1,7 @@
 //! PNG, JPEG and Radiance HDR, through the image library's decoders.
 
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read as _};
+use std::io::{BufReader, Cursor, Read as _, Seek as _};
 
 use image::codecs::hdr::HdrDecoder;
 use image::codecs::jpeg::JpegDecoder;
@@ -13,7 +13,13 @@ use super::tone::{Alpha, Colors, Sample, Tone, Toner};
 use super::{Format, Picture, PictureError, limits};
 
 /// Reads a PNG file: 1 to 16 bits, gray, colour or palette, with or without alpha.
-pub(super) fn png(file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
+pub(super) fn png(mut file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
+    // The decoder begins with buffers for a row, and says of a row too long only that it is.
+    if let Ok(header) = png::Decoder::new(&mut file).read_header_info() {
+        let bits = header.bits_per_pixel();
+        limits::check(header.width as usize, header.height as usize, bits.div_ceil(8))?;
+    }
+    file.rewind()?;
     let decoder = PngDecoder::with_limits(file, decoder_limits());
     decode(Format::Png, decoder, tone)
 }

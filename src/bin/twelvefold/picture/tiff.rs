@@ -277,9 +277,9 @@ mod tests {
         let mut covered = [[0; 10]; 7];
         let mut chunks = Vec::new();
         for region in layout.regions() {
-            for y in region.top..region.top + region.height {
-                for x in region.left..region.left + region.width {
-                    covered[y][x] += 1;
+            for row in &mut covered[region.top..][..region.height] {
+                for pixel in &mut row[region.left..][..region.width] {
+                    *pixel += 1;
                 }
             }
             chunks.extend(region.chunks);
