@@ -334,9 +334,6 @@ impl Slot {
 }
 
 impl Relaxation {
-    /// The largest contrast c at which the smooth layer alone is read; see [`roughness`].
-    pub const SMOOTH_UP_TO: f64 = 0.07;
-
     /// Encodes the table; [`from_bytes`](Self::from_bytes) reads it back.
     ///
     /// # Errors
@@ -418,7 +415,7 @@ impl Relaxation {
 
     /// The vector of a point at phase `tau` where the importance has contrast `detail`, in the
     /// grandparent's frame and in edges of the point's level: smooth + (rough − smooth)·detail.
-    /// `detail` is clamped to [0, 1], see [`detail`]; it does nothing without a rough layer.
+    /// `detail`, the rough layer's share, is clamped to [0, 1]; it does nothing without a rough layer.
     #[must_use]
     pub fn vector(&self, classes: &Classes, tau: f64, detail: f64) -> [f64; 2] {
         let smooth = self.smooth.vector(classes, tau);

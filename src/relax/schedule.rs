@@ -32,8 +32,6 @@ pub struct Phase {
 /// All that is trained.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recipe {
-    /// A name, for the provenance.
-    pub name: &'static str,
     /// The smooth layer's phases, in order; at least one.
     pub smooth: Vec<Phase>,
     /// The rough layer's grid and passes, trained after the smooth layer and starting from it.
@@ -91,9 +89,9 @@ impl Recipe {
     /// What `tables/relaxed.bin` is trained with: minutes on two cores.
     ///
     /// Soft forces bring the points into order on a coarse grid. Then, on a finer grid, contacts
-    /// raise the least distances: each member of a class pushes its share, so contacts that only a few members
-    /// have must be stiff to count, and the step small to keep stiff contacts stable. Below τ = 3, where a new
-    /// point displaces many, a class spans three generations.
+    /// raise the least distances: each member of a class pushes its share, so contacts that only a
+    /// few members have must be stiff to count, and the step small to keep stiff contacts stable.
+    /// Below τ = 3, where a new point displaces many, a class spans three generations.
     #[must_use]
     pub fn standard() -> Self {
         let coarse = Grid {
@@ -133,7 +131,6 @@ impl Recipe {
             stages,
         };
         Self {
-            name: "standard",
             smooth: vec![
                 Phase { grid: coarse, passes: vec![soft] },
                 Phase {
@@ -180,7 +177,6 @@ impl Recipe {
             stages: vec![stage(4, 0.4, NO_CONTACTS, 0.2)],
         };
         Self {
-            name: "tiny",
             smooth: vec![Phase { grid: grid.clone(), passes: vec![pass] }],
             rough: Some((grid, vec![images])),
         }

@@ -79,8 +79,8 @@ pub fn pass(
     Ok(())
 }
 
-/// Trains a rough layer on images: each patch is a procedural image (see [`Motif`]) at one of `count` phases
-/// spread over a level; points read `smooth` and `rough` mixed by the detail around them, and only `rough` learns.
+/// Trains a rough layer on procedural images (see [`motif`]) at phases spread over a level. Points read
+/// `smooth` and `rough` mixed by the detail around them; only `rough` learns.
 ///
 /// # Errors
 /// As [`pass`].
