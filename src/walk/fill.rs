@@ -116,17 +116,20 @@ pub(crate) fn fill<I: Importance, O: Output>(
 
 type Scalars<O> = <<O as Output>::Position as Position>::Scalar;
 
+/// What emitting a batch reads and writes.
+type State<'s, O> = (
+    &'s AnyTraversal,
+    &'s ToCaller<Scalars<O>>,
+    &'s mut Chunk<Scalars<O>>,
+    &'s mut O,
+    &'s mut usize,
+);
+
 /// Writes the points of the current batch; `false` if there was no room for all of them.
 #[inline(always)]
 fn emit<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
-    (traversal, to_caller, chunk, output, written): (
-        &AnyTraversal,
-        &ToCaller<Scalars<O>>,
-        &mut Chunk<Scalars<O>>,
-        &mut O,
-        &mut usize,
-    ),
+    (traversal, to_caller, chunk, output, written): State<'_, O>,
 ) -> Result<bool, SamplingError> {
     let batch = traversal.batch();
     let mut next = batch.start;
