@@ -12,8 +12,7 @@ use glam::DVec2;
 use crate::placement::Placement;
 use crate::seed::SplitMix64;
 use crate::tiling::MAX_LEVEL;
-use crate::walk::chunk::Chunk;
-use crate::walk::leaf::{Leaf, tile_counts};
+use crate::walk::batch::{Batch, tile_counts};
 use crate::walk::node::{ExactPoint, Node};
 use crate::walk::scalar::Scalar;
 use crate::{Domain, Tables};
@@ -107,15 +106,16 @@ fn largest_error<S: Scalar>(epsilon: f64) -> f64 {
             for _ in 0..8 {
                 let node = random_node(&placement, &mut random, level);
                 let block = placement.tables().block(node.kind);
-                let candidates = block.len();
-                let leaf = Leaf { node, candidates, inside: true, all_accepted: true, bound: 0.0 };
-                let mut chunk = Chunk::<S>::new();
+                let batch = Batch { node, start: 0, end: block.len(), ..Batch::EMPTY };
                 let mut next = 0;
-                while next < candidates {
+                while next < batch.end {
                     let first = next;
-                    next = leaf.fill_chunk(&placement, first, &mut chunk);
-                    for i in 0..chunk.len {
-                        let [x, y] = [chunk.x[i], chunk.y[i]].map(S::to_f64);
+                    let (segment, end) = batch.segment::<S>(&placement, first, 256);
+                    next = end;
+                    let (mut x, mut y) = ([S::default(); 256], [S::default(); 256]);
+                    segment.write_columns(&mut x[..end - first], &mut y[..end - first]);
+                    for i in 0..end - first {
+                        let [x, y] = [x[i], y[i]].map(S::to_f64);
                         if !domain.contains(DVec2::new(x, y)) {
                             continue;
                         }
@@ -135,11 +135,8 @@ fn largest_error<S: Scalar>(epsilon: f64) -> f64 {
 
 /// Level and exact coordinates at its birth of entry `i` of the node's block.
 fn born(node: &Node, tables: &Tables<'_>, i: usize) -> (u8, ExactPoint) {
-    if i == 0 {
-        return (node.born, node.centre_at_birth);
-    }
     let block = tables.block(node.kind);
-    let levels = (1..=usize::from(tables.depth())).find(|j| i < block.born_before(j + 1)).unwrap();
+    let levels = (0..=usize::from(tables.depth())).find(|j| i < block.born_before(j + 1)).unwrap();
     let offset = block.offset(usize::from(node.rotation % 3), i);
     let centre = (0..levels).fold(node.centre, |centre, _| centre.finer());
     (node.level + levels as u8, centre.plus(offset.turned_back(4 - node.rotation / 3)))

@@ -169,7 +169,7 @@ proptest! {
         prop_assert!(filled.complete && filled.written == iterated.len());
         prop_assert!(iterated.iter().zip(&buffer).all(|(sample, at)| sample.position == *at));
         for depth in 1..=bake::MAX_DEPTH {
-            let bytes = bake::bake(&Tables::built_in().rules(), depth).unwrap();
+            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
             let placement =
                 Placement::with_tables(image.domain(), seed, Tables::from_bytes(&bytes).unwrap());
             let sampling = Sampling::new(&placement, &image, Amount::Points(amount)).unwrap();

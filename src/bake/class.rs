@@ -120,9 +120,6 @@ pub fn coarsened(rules: &Rules, generations: usize, class: u32, fewer: usize) ->
 mod tests {
     use alloc::{vec, vec::Vec};
 
-    use alloc::vec;
-    use alloc::vec::Vec;
-
     use super::*;
     use crate::tiling::Digits;
 
