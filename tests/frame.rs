@@ -124,3 +124,31 @@ fn views_that_do_not_fit_their_data_do_not_exist() {
     assert!(PixelView::with_stride(data, 5, 2, 4).is_none());
     assert!(PixelView::with_stride(data, 1, usize::MAX, usize::MAX).is_none());
 }
+
+#[test]
+fn a_bound_misses_no_pixel_and_sees_none_far_away() {
+    for (width, height) in [(1, 1), (1, 9), (17, 1), (7, 5), (33, 40)] {
+        for hot in 0..width * height {
+            let mut pixels = vec![0.0f32; width * height];
+            pixels[hot] = 1.0;
+            let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap();
+            // The nearest point of the hot pixel's square to a disc's centre.
+            let low = glam::DVec2::new((hot % width) as f64, (hot / width) as f64);
+            for i in 0..64 {
+                let place = |step: usize, size: usize| (i * step % 64) as f64 / 64.0 * size as f64;
+                let centre = glam::DVec2::new(place(1, width), place(27, height));
+                for radius in [0.01, 0.6, 1.0, 2.3, 9.0, 70.0] {
+                    let bound = map.upper_bound(&Region { centre, radius });
+                    let away = centre.distance(centre.clamp(low, low + 1.0));
+                    assert!(away >= radius || bound == 1.0);
+                    // A square of side 2r, widened to texels of at most 2r or one pixel each side.
+                    let reach = std::f64::consts::SQRT_2 * (3.0 * radius).max(radius + 1.0);
+                    assert!(
+                        away <= reach + 1e-9 || bound == 0.0,
+                        "{width} {hot} {centre} {radius}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -15,7 +15,10 @@ use twelvefold::{
 
 use maps::Map;
 
-/// Something that writes points into a buffer.
+/// Writes points to a buffer's start; returns how many.
+type Maker<'a> = Box<dyn FnMut(&mut [Vec2]) -> usize + 'a>;
+
+/// A way to make points.
 pub(crate) struct Contender<'a> {
     /// As the table shows it.
     pub(crate) name: String,
@@ -23,8 +26,7 @@ pub(crate) struct Contender<'a> {
     pub(crate) most: usize,
     /// Prepares `n` points (not timed) and returns what makes them (timed): it writes them to the
     /// buffer's start and returns how many.
-    #[allow(clippy::type_complexity, reason = "said once")]
-    pub(crate) prepare: Box<dyn Fn(usize) -> Box<dyn FnMut(&mut [Vec2]) -> usize + 'a> + 'a>,
+    pub(crate) prepare: Box<dyn Fn(usize) -> Maker<'a> + 'a>,
 }
 
 impl<'a> Contender<'a> {
@@ -34,8 +36,7 @@ impl<'a> Contender<'a> {
         F: Fn(usize) -> G + 'a,
         G: FnMut(&mut [Vec2]) -> usize + 'a,
     {
-        let prepare =
-            move |n: usize| -> Box<dyn FnMut(&mut [Vec2]) -> usize + 'a> { Box::new(prepare(n)) };
+        let prepare = move |n: usize| -> Maker<'a> { Box::new(prepare(n)) };
         Self { name: name.into(), most: usize::MAX, prepare: Box::new(prepare) }
     }
 

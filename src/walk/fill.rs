@@ -102,10 +102,9 @@ pub(crate) fn fill<I: Importance, O: Output>(
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {
-        let state = (&traversal, &to_caller, &mut chunk, &mut output, &mut written);
         let complete = vectors.run(
             #[inline(always)]
-            || emit(sampling, state),
+            || emit(sampling, &traversal, &to_caller, &mut chunk, (&mut output, &mut written)),
         )?;
         if !complete {
             return Ok(Filled { written, complete });
@@ -114,22 +113,15 @@ pub(crate) fn fill<I: Importance, O: Output>(
     Ok(Filled { written, complete: true })
 }
 
-type Scalars<O> = <<O as Output>::Position as Position>::Scalar;
-
-/// What emitting a batch reads and writes.
-type State<'s, O> = (
-    &'s AnyTraversal,
-    &'s ToCaller<Scalars<O>>,
-    &'s mut Chunk<Scalars<O>>,
-    &'s mut O,
-    &'s mut usize,
-);
-
-/// Writes the points of the current batch; `false` if there was no room for all of them.
+/// Writes the points of the current batch from index `written` on; `false` if there was no room for
+/// all of them.
 #[inline(always)]
-fn emit<I: Importance, O: Output>(
+fn emit<I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
     sampling: &Sampling<'_, I>,
-    (traversal, to_caller, chunk, output, written): State<'_, O>,
+    traversal: &AnyTraversal,
+    to_caller: &ToCaller<S>,
+    chunk: &mut Chunk<S>,
+    (output, written): (&mut O, &mut usize),
 ) -> Result<bool, SamplingError> {
     let batch = traversal.batch();
     let mut next = batch.start;
