@@ -88,7 +88,9 @@ pub enum SamplingError {
         /// The limit.
         limit: u64,
     },
-    /// No number of the position type lies in the domain: it is too small, too far from the origin.
+    /// The position type cannot tell the points of the domain apart: it is too far from the origin for
+    /// any number of this precision to lie in it, or its sizes leave the precision's range (for `f32`,
+    /// a diagonal outside of some 10⁻³⁰ … 10³⁷).
     Precision,
 }
 
@@ -118,7 +120,7 @@ impl fmt::Display for SamplingError {
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
             Self::Precision => {
-                f.write_str("no number of this precision lies in the domain; use DVec2")
+                f.write_str("positions of this precision cannot resolve the domain; use DVec2")
             }
         }
     }
