@@ -5,10 +5,13 @@ use twelvefold::{EnvironmentError, EnvironmentMap, InvalidPixels};
 
 use super::classic::Random;
 
+/// A function of the unit square and its integral.
+pub(crate) type Instance = (Box<dyn Fn(DVec2) -> f64>, f64);
+
 /// A family of functions of the unit square: a function and its integral for each seed.
 pub(crate) struct Plane {
     pub(crate) name: &'static str,
-    pub(crate) instance: fn(seed: u64) -> (Box<dyn Fn(DVec2) -> f64>, f64),
+    pub(crate) instance: fn(seed: u64) -> Instance,
 }
 
 /// Scenes of constant importance.
