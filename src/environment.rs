@@ -184,17 +184,20 @@ impl EnvironmentMap {
     }
 
     /// The light at a position in the image, in pixels from the upper left corner. Positions outside
-    /// count as the nearest inside.
+    /// count as the nearest inside, NaN as 0.
     #[must_use]
     pub fn sample(&self, position: DVec2) -> EnvironmentSample {
-        let (width, _) = self.size();
+        let (width, height) = self.size();
+        // In this form, a comparison that is false for NaN.
+        let inside = |c: f64, end: usize| if c > 0.0 { c.min(end as f64) } else { 0.0 };
+        let position = DVec2::new(inside(position.x, width), inside(position.y, height));
         let (x, y) = self.importance.texel(position);
-        let down = (position.y - y as f64).clamp(0.0, 1.0);
+        let down = position.y - y as f64;
         let (upper, lower) = (self.cosines[y], self.cosines[y + 1]);
         let z = upper + down * (lower - upper);
         // sin² = (1 − cos)(1 + cos) keeps its digits near the poles.
         let sine = libm::sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
-        let azimuth = position.x.clamp(0.0, width as f64) * (TAU / width as f64);
+        let azimuth = position.x * (TAU / width as f64);
         let direction = DVec3::new(sine * libm::cos(azimuth), sine * libm::sin(azimuth), z);
         EnvironmentSample {
             direction,

@@ -102,7 +102,9 @@ pub enum SamplingError {
         /// Of how many.
         of: usize,
     },
-    /// No number of the position type lies in the domain: it is too small, too far from the origin.
+    /// The position type cannot tell the points of the domain apart: it is too far from the origin for
+    /// any number of this precision to lie in it, or its sizes leave the precision's range (for `f32`,
+    /// a diagonal outside of some 10⁻³⁰ … 10³⁷).
     Precision,
 }
 
@@ -134,7 +136,7 @@ impl fmt::Display for SamplingError {
             Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
             Self::Shard { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
             Self::Precision => {
-                f.write_str("no number of this precision lies in the domain; use DVec2")
+                f.write_str("positions of this precision cannot resolve the domain; use DVec2")
             }
         }
     }

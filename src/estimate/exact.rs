@@ -158,7 +158,7 @@ fn candidates<I: Importance>(
             return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
         }
         let value = sampling.importance().value(sample.position);
-        if value.is_nan() || value <= 0.0 {
+        if value <= 0.0 || value.is_nan() {
             // Rounding carried the position over an edge of the importance: no finite density there.
             continue;
         }

@@ -16,8 +16,15 @@ use crate::importance::sums::{Cell, SumPyramid};
 /// Removes the variance between cells: 2 to 9 times less error at 16,384 points. Slightly biased
 /// (below half of its error); worth it from some 256 points on. `points` must all be of one set over
 /// the map's domain, with their densities. O(pixels + points·log points).
+///
+/// For more than one set of a map, [`Warp::post_stratify`](super::Warp::post_stratify) sums the pixels
+/// once.
 pub fn post_stratify(points: &mut [Weighted], map: &ImageMap, per_cell: f64) {
-    let sums = SumPyramid::new(map);
+    weigh(points, map, &SumPyramid::new(map), per_cell);
+}
+
+/// The same with the map's sums at hand.
+pub(super) fn weigh(points: &mut [Weighted], map: &ImageMap, sums: &SumPyramid, per_cell: f64) {
     let sum = sums.sum(sums.top());
     let Some(first) = points.first() else { return };
     let (x, y) = map.texel(first.position);
@@ -38,7 +45,7 @@ pub fn post_stratify(points: &mut [Weighted], map: &ImageMap, per_cell: f64) {
         })
         .collect();
     let strata = Strata {
-        sums: &sums,
+        sums,
         expected_per_sum,
         split_from: 4.0 * if per_cell >= 1.0 { per_cell } else { 1.0 },
     };

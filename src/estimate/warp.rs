@@ -88,6 +88,11 @@ impl<'m> Warp<'m> {
         Weighted { position, rank, density, weight: 1.0 / density }
     }
 
+    /// [`post_stratify`](super::post_stratify) without summing the pixels again: O(points·log points).
+    pub fn post_stratify(&self, points: &mut [Weighted], per_cell: f64) {
+        super::stratified::weigh(points, self.map, &self.sums, per_cell);
+    }
+
     /// Exactly `n` points that follow the map: a complete level of the tiling, warped. Ordered by rank;
     /// ranks are those of the uniform set.
     ///

@@ -83,9 +83,16 @@ mod tests {
 
     fn random(width: usize, height: usize, seed: u64) -> BilinearMap {
         let mut random = SplitMix64::new(seed);
-        let pixels: Vec<f32> = (0..width * height)
-            .map(|_| if random.next_u64() % 3 == 0 { 0.0 } else { 9.0 * random.unit() as f32 })
-            .collect();
+        let pixels: Vec<f32> =
+            (0..width * height)
+                .map(|_| {
+                    if random.next_u64().is_multiple_of(3) {
+                        0.0
+                    } else {
+                        9.0 * random.unit() as f32
+                    }
+                })
+                .collect();
         BilinearMap::new(ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap())
     }
 
@@ -124,7 +131,7 @@ mod tests {
     fn the_integral_is_that_of_the_values() {
         let map = random(5, 4, 3);
         // The midpoint rule is exact on each quarter pixel: the function is bilinear there.
-        let (mut sum, n) = (0.0, 2);
+        let (mut sum, n) = (0.0, 2usize);
         for j in 0..4 * n {
             for i in 0..5 * n {
                 sum += map.value((DVec2::new(i as f64, j as f64) + 0.5) / n as f64);

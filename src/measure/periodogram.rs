@@ -193,7 +193,7 @@ mod tests {
         let mean = rings.iter().map(|ring| ring.power).sum::<f64>() / rings.len() as f64;
         assert!((mean - 1.0).abs() < 0.02, "{mean}");
 
-        let side = 64;
+        let side = 64usize;
         let lattice: Vec<DVec2> = (0..side * side)
             .map(|i| (DVec2::new((i % side) as f64, (i / side) as f64) + 0.5) / side as f64)
             .collect();

@@ -12,7 +12,7 @@ pub(crate) struct Measured {
     pub(crate) n: usize,
     /// Root-mean-square error over the seeds, relative to the mean integral.
     pub(crate) error: f64,
-    /// Median time to make the set, in seconds.
+    /// Least time to make the set, in seconds.
     pub(crate) seconds: f64,
 }
 
@@ -111,9 +111,15 @@ impl Scene {
             let area = SVGBackend::with_string(&mut text, (1200, 520)).into_drawing_area();
             area.fill(&WHITE)?;
             let area = area.titled(&self.name, ("sans-serif", 20))?;
-            let (left, right) = area.split_horizontally(520);
-            self.plot(&left, "samples", |m| m.n as f64, false)?;
-            self.plot(&right, "seconds a set", |m| m.seconds, true)?;
+            let (left, rest) = area.split_horizontally(520);
+            let (right, legend) = rest.split_horizontally(490);
+            self.plot(&left, "samples", |m| m.n as f64)?;
+            self.plot(&right, "seconds a set", |m| m.seconds)?;
+            for (i, curve) in self.curves.iter().enumerate() {
+                let y = 20 + 20 * i as i32;
+                legend.draw(&PathElement::new(vec![(0, y), (22, y)], style(i, curve)))?;
+                legend.draw(&Text::new(curve.sampler, (28, y - 6), ("sans-serif", 13)))?;
+            }
             area.present()?;
         }
         Ok(text)
@@ -124,7 +130,6 @@ impl Scene {
         area: &DrawingArea<SVGBackend<'_>, Shift>,
         x_name: &str,
         x: impl Fn(&Measured) -> f64,
-        legend: bool,
     ) -> Result<(), Box<dyn Error>> {
         let shown = || {
             let all = self.curves.iter().flat_map(|curve| &curve.points);
@@ -138,7 +143,6 @@ impl Scene {
         };
         let mut chart = ChartBuilder::on(area)
             .margin(8)
-            .margin_right(if legend { 190 } else { 8 })
             .x_label_area_size(34)
             .y_label_area_size(64)
             .build_cartesian_2d(range(&x).log_scale(), range(&|m| m.error).log_scale())?;
@@ -152,29 +156,38 @@ impl Scene {
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .draw()?;
         for (i, curve) in self.curves.iter().enumerate() {
-            let ours = curve.sampler.starts_with("ours");
-            let color = Palette99::pick(i).to_rgba();
-            let style = color.stroke_width(if ours { 3 } else { 1 });
+            let style = style(i, curve);
             let visible: Vec<(f64, f64)> = curve
                 .points
                 .iter()
                 .filter(|m| m.error > 0.0 && x(m) > 0.0)
                 .map(|m| (x(m), m.error))
                 .collect();
-            chart
-                .draw_series(LineSeries::new(visible.clone(), style).point_size(2))?
-                .label(curve.sampler)
-                .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], style));
-        }
-        if legend {
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::Coordinate(480, 10))
-                .label_font(("sans-serif", 13))
-                .draw()?;
+            chart.draw_series(LineSeries::new(visible, style).point_size(2))?;
         }
         Ok(())
     }
+}
+
+/// Twelve colours that are told apart on white; ours are drawn thick.
+fn style(i: usize, curve: &Curve) -> ShapeStyle {
+    const COLORS: [(u8, u8, u8); 12] = [
+        (0xd6, 0x27, 0x28),
+        (0xff, 0x7f, 0x0e),
+        (0xbc, 0x9d, 0x00),
+        (0x2c, 0xa0, 0x2c),
+        (0x8c, 0x56, 0x4b),
+        (0x1f, 0x4e, 0xb4),
+        (0x00, 0xa0, 0xb0),
+        (0x94, 0x67, 0xbd),
+        (0xe3, 0x77, 0xc2),
+        (0x55, 0x55, 0x55),
+        (0xa0, 0xa0, 0xa0),
+        (0x60, 0x80, 0x40),
+    ];
+    let (red, green, blue) = COLORS[i % COLORS.len()];
+    let width = if curve.sampler.starts_with("ours") { 3 } else { 1 };
+    RGBColor(red, green, blue).stroke_width(width)
 }
 
 /// Three digits, as in a table.

@@ -1,7 +1,7 @@
 //! The samplers compared: ours in its variants, and what else is in use.
 
 use glam::DVec2;
-use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise, post_stratify};
+use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise};
 use twelvefold::{Amount, Constant, Domain, ImageMap, Importance, Limits, Placement, Sampling};
 
 use super::classic::{Alias, InverseCdf, Random, halton, plastic, sobol};
@@ -187,7 +187,7 @@ pub(crate) const FOLLOWING: [Following; 12] = [
         make: |target, n, seed| {
             let map = target.map;
             let mut points = thresholded(map.domain(), map, n, seed, Weighting::Density)?;
-            post_stratify(&mut points, map, 6.0);
+            target.warp.post_stratify(&mut points, 6.0);
             Some(set(points))
         },
     },

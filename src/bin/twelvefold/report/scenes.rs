@@ -5,10 +5,10 @@ use twelvefold::{EnvironmentError, EnvironmentMap, InvalidPixels};
 
 use super::classic::Random;
 
-/// A function of the unit square, and its integral.
-type Instance = (Box<dyn Fn(DVec2) -> f64>, f64);
+/// A function of the unit square and its integral.
+pub(crate) type Instance = (Box<dyn Fn(DVec2) -> f64>, f64);
 
-/// A family of functions of the unit square, one for each seed.
+/// A family of functions of the unit square: a function and its integral for each seed.
 pub(crate) struct Plane {
     pub(crate) name: &'static str,
     pub(crate) instance: fn(seed: u64) -> Instance,
