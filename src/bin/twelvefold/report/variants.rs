@@ -26,7 +26,7 @@ pub(crate) fn table(picture: &ImageMap, sizes: &[usize]) -> String {
     text += "\n";
     let rules = Tables::built_in().rules();
     for depth in 1..=bake::MAX_DEPTH {
-        let Ok(bytes) = bake::bake(&rules, depth) else { continue };
+        let Ok(bytes) = bake::bake(&rules, depth, None) else { continue };
         let Ok(tables) = Tables::from_bytes(&bytes) else { continue };
         let built_in = depth == Tables::built_in().depth();
         let name = if built_in { " (as built)" } else { "" };
