@@ -40,9 +40,9 @@ fn uniform_densities_are_even_at_every_count_where_training_never_was() {
     let relaxed = uniform_sweep(&rules, Some(&committed()), 12, 1, SEED).unwrap();
     for (tau, measured) in &relaxed {
         let e = worst(measured).unwrap();
-        assert!(e.low_frequency <= 0.016, "tau {tau}: {e:?}");
-        assert!(e.mean_distance >= 0.895, "tau {tau}: {e:?}");
-        assert!(e.least_distance >= 0.73, "tau {tau}: {e:?}");
+        assert!(e.low_frequency <= 0.0155, "tau {tau}: {e:?}");
+        assert!(e.mean_distance >= 0.90, "tau {tau}: {e:?}");
+        assert!(e.least_distance >= 0.72, "tau {tau}: {e:?}");
     }
     // The measure can tell: fixed centres are far from it.
     let fixed = uniform_sweep(&rules, None, 3, 1, SEED).unwrap();

@@ -59,7 +59,7 @@ pub struct ImageRules {
 impl Default for ImageRules {
     fn default() -> Self {
         Self {
-            accept_radius: 0.6,
+            accept_radius: 0.7,
             phase_radius: 1.0,
             detail_radius: 1.0,
             detail_range: [0.03, 0.15],
