@@ -7,7 +7,7 @@
 //!
 //! 1. s₁ = spacing(mean over half-side s₀), s₀ the spacing of the image's mean importance;
 //! 2. *phase*: mean over half-side s₁; s = its spacing. Neither exceeds 1.5·s₀;
-//! 3. *acceptance*: mean over half-side s/2;
+//! 3. *acceptance*: mean over half-side 0.7·s;
 //! 4. *detail*: standard deviation over mean, in a box of half-side s, 0.03 … 0.15 taken to 0 … 1.
 //!
 //! Points read them bilinearly. The boxes of the means do not depend on the pixel's own value, so that
@@ -22,7 +22,7 @@ use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError};
 use crate::domain::{Domain, Region};
 
 /// Half-side, in spacings, of the box whose mean decides on acceptance.
-const ACCEPT_RADIUS: f64 = 0.5;
+const ACCEPT_RADIUS: f64 = 0.7;
 
 /// No box grows past this many spacings of the mean importance.
 const LARGEST_SPACING: f64 = 1.5;
