@@ -77,7 +77,7 @@ impl Strata<'_> {
             let factor = expected / members.len() as f64;
             for member in members {
                 let point = &mut points[member.index];
-                point.weight = factor / point.density;
+                point.weight = if point.density > 0.0 { factor / point.density } else { 0.0 };
             }
             return;
         }
