@@ -152,7 +152,7 @@ fn points_of_map(map: &ImageMap, seed: u64) {
     {
         assert_eq!(points.len(), n);
         for point in points {
-            assert!(domain.contains(point.position) && map.value(point.position) > 0.0);
+            assert!(domain.contains(point.position) && point.density > 0.0);
         }
     }
     let amount = Amount::Points(n as f64);

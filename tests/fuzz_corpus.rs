@@ -162,6 +162,8 @@ fn maps() {
         seed(17, 3, -7.0, 1e9, |i| if i == 20 { 1e30 } else { 1e-30 }),
         // The crash that NaN as a position in an environment was.
         seed(5, 5, f64::NAN, 1.0, |_| 1.0),
+        // So far from the origin that several pixels lie between two numbers.
+        seed(1, 39, 5.5e11, 0.001, |i| (i % 2) as f32),
         // Too small for `f32`: positions left the domain.
         seed(4, 4, 0.0, 1e-44, |_| 1.0),
         seed(4, 4, 0.0, 1e44, |_| 1.0),

@@ -40,20 +40,30 @@ impl<'m> Warp<'m> {
         (sum > 0.0 && sum.is_finite()).then_some(Self { map, sums })
     }
 
-    /// Where a point of [0, 1)² goes: to a point of the domain inside a pixel above 0. Coordinates
-    /// outside of [0, 1), NaN included, count as the nearest inside.
+    /// Where a point of [0, 1)² goes: to a point of the domain inside a pixel above 0, unless the domain
+    /// is so far from the origin that `f64` cannot tell its pixels apart. Coordinates outside of [0, 1),
+    /// NaN included, count as the nearest inside.
     #[must_use]
     pub fn position(&self, at: DVec2) -> DVec2 {
         let (column, row, at) = self.pixel(at);
+        self.inside(column, row, at)
+    }
+
+    /// The point at `at` in [0, 1)² of a pixel, in the map's domain.
+    fn inside(&self, column: usize, row: usize, at: DVec2) -> DVec2 {
         let domain = self.map.domain();
         let (width, height) = self.map.size();
         let size = domain.size() / DVec2::new(width as f64, height as f64);
         let position = domain.min() + size * (DVec2::new(column as f64, row as f64) + at);
         // Rounding may carry a point to the next pixel, which may be 0, or out of the domain.
-        if self.map.texel(position) == (column, row) && domain.contains(position) {
+        let fits = |p: DVec2| self.map.texel(p) == (column, row) && domain.contains(p);
+        let centre = domain.min() + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+        if fits(position) {
             position
+        } else if domain.contains(centre) {
+            centre
         } else {
-            domain.min() + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
+            domain.min()
         }
     }
 
@@ -80,8 +90,8 @@ impl<'m> Warp<'m> {
     /// that are each uniform in the square is unbiased.
     #[must_use]
     pub fn weighted(&self, at: DVec2, n: usize, rank: u64) -> Weighted {
-        let position = self.position(at);
-        let (x, y) = self.map.texel(position);
+        let (x, y, at) = self.pixel(at);
+        let position = self.inside(x, y, at);
         let value = f64::from(self.map.pixels()[y * self.map.size().0 + x]);
         let integral = self.map.mean() * self.map.domain().area();
         let density = n as f64 * (value / integral);

@@ -24,7 +24,8 @@ pub struct Weighted {
     pub position: DVec2,
     /// Its index in the placement's endless sequence.
     pub rank: u64,
-    /// Points expected in a squared unit at the position, above 0.
+    /// Points expected in a squared unit at the position: above 0, unless rounding carried the position
+    /// over an edge of the importance; then density and weight are 0.
     pub density: f64,
     /// The area that the point stands for: Σ f(position)·weight estimates ∫ f. Not negative.
     pub weight: f64,
@@ -87,7 +88,9 @@ impl<I: Importance> Iterator for WeightedPoints<'_, I> {
             }
         };
         let (position, rank) = (sample.position, sample.rank);
-        Some(Ok(Weighted { position, rank, density, weight: factor / density }))
+        // Far from the origin, rounding may have carried the position to where nothing is expected.
+        let weight = if density > 0.0 { factor / density } else { 0.0 };
+        Some(Ok(Weighted { position, rank, density, weight }))
     }
 }
 
