@@ -21,9 +21,10 @@ mod tiling;
 use std::process::ExitCode;
 
 const DIGITS: &str = "tables/digits.txt";
+const RELAXED: &str = "tables/relaxed.bin";
 
 fn main() -> ExitCode {
-    for input in ["build.rs", "src/tiling", "src/bake", "tables/digits.txt"] {
+    for input in ["build.rs", "src/tiling", "src/bake", "tables"] {
         println!("cargo::rerun-if-changed={input}");
     }
     println!("cargo::rerun-if-env-changed=TWELVEFOLD_DEPTH");
@@ -46,11 +47,26 @@ fn write_tables() -> Result<(), String> {
     let text = std::fs::read_to_string(DIGITS).map_err(|error| format!("{DIGITS}: {error}"))?;
     let digits = tiling::Digits::parse(&text).map_err(|error| format!("{DIGITS}, {error}"))?;
     let rules = tiling::Rules::new(&digits).map_err(|error| format!("{DIGITS}, {error}"))?;
-    let bytes = bake::bake(&rules, depth).map_err(|error| format!("TWELVEFOLD_DEPTH: {error}"))?;
+    let relaxation = read_relaxation()?;
+    let bytes = bake::bake(&rules, depth, relaxation.as_ref()).map_err(|error| match error {
+        bake::BakeError::Depth { .. } => format!("TWELVEFOLD_DEPTH: {error}"),
+        _ => format!("{RELAXED}: {error}"),
+    })?;
     let folder = std::env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: run by cargo only")?;
     let folder = std::path::PathBuf::from(folder);
     // Lets tests/build_script.rs find and run this very script.
     println!("cargo::rustc-env=OUT_DIR_OF_BUILD={}", folder.display());
     let file = folder.join("tables.bin");
     std::fs::write(&file, bytes).map_err(|error| format!("{}: {error}", file.display()))
+}
+
+/// The relaxed offsets, unless the file is missing: then the tables hold fixed centres only.
+fn read_relaxation() -> Result<Option<bake::relaxation::Relaxation>, String> {
+    match std::fs::read(RELAXED) {
+        Ok(bytes) => bake::relaxation::Relaxation::from_bytes(&bytes)
+            .map(Some)
+            .map_err(|error| format!("{RELAXED}: {error}")),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(format!("{RELAXED}: {error}")),
+    }
 }

@@ -80,6 +80,9 @@ pub(crate) struct ToCaller<S> {
 impl<S: Scalar> ToCaller<S> {
     pub(crate) fn new(domain: &Domain) -> Result<Self, SamplingError> {
         let (min, max) = (domain.min(), domain.max());
+        if !resolves::<S>(domain) {
+            return Err(SamplingError::Precision);
+        }
         Ok(Self {
             min: min.to_array().map(S::from_f64),
             x_range: representable(min.x, max.x).ok_or(SamplingError::Precision)?,
@@ -113,6 +116,16 @@ impl<S: Scalar> ToCaller<S> {
     }
 }
 
+/// Whether the edges of the deepest level, 10⁻⁷ diagonals, are normal numbers of this precision, as are
+/// positions and both sizes: otherwise rounding errors are not a matter of the last place.
+fn resolves<S: Scalar>(domain: &Domain) -> bool {
+    let diagonal = domain.diagonal();
+    [1e-8 * diagonal, 16.0 * diagonal, domain.size().min_element()].into_iter().all(|length| {
+        let rounded = S::from_f64(length).to_f64();
+        (rounded - length).abs() <= 1e-6 * length
+    })
+}
+
 /// The closed range of numbers of a precision inside a half-open interval, if there are any.
 fn representable<S: Scalar>(min: f64, max: f64) -> Option<(S, S)> {
     let mut low = S::from_f64(min);
@@ -129,6 +142,24 @@ fn representable<S: Scalar>(min: f64, max: f64) -> Option<(S, S)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sizes_at_the_ends_of_a_precision_are_refused() {
+        let single = |width, height| {
+            resolves::<f32>(&Domain::new(DVec2::ZERO, DVec2::new(width, height)).unwrap())
+        };
+        for (width, height) in [(1.0, 1.0), (1e-29, 1e-29), (1e36, 1e36), (1e-8, 1.0), (1e9, 1e-6)]
+        {
+            assert!(single(width, height), "{width} {height}");
+        }
+        for (width, height) in [(1e-32, 1e-32), (1e-50, 1.0), (1e38, 1.0), (1e50, 1e50)] {
+            assert!(!single(width, height), "{width} {height}");
+        }
+        for size in [1e-100, 1.0, 1e100] {
+            let domain = Domain::new(DVec2::ZERO, DVec2::splat(size)).unwrap();
+            assert!(resolves::<f64>(&domain));
+        }
+    }
 
     #[test]
     fn ranges_hold_exactly_the_numbers_inside() {

@@ -48,11 +48,19 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
+#[cfg(test)]
+mod accuracy;
 pub mod bake;
 mod clip;
 mod domain;
+mod environment;
+pub mod estimate;
 pub mod importance;
+#[cfg(feature = "measure")]
+pub mod measure;
 #[cfg(test)]
 mod oracle;
 pub mod paper;
@@ -60,6 +68,9 @@ pub mod paper;
 mod parallel;
 mod placement;
 mod points;
+#[cfg(feature = "train")]
+pub mod relax;
+mod relaxed;
 mod sampling;
 mod seed;
 mod tables;
@@ -67,13 +78,16 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
+pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
 pub use importance::{
-    Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Probed,
+    BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData,
+    PixelView, Probed, StippleMap,
 };
 #[cfg(feature = "parallel")]
 pub use parallel::Shards;
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
+pub use relaxed::RelaxationTable;
 pub use sampling::{Amount, Limits, Sampling, SamplingError};
 pub use tables::{BlockTable, Tables, TablesError};
 pub use walk::scalar::{Coordinate, Position, Scalar};

@@ -3,26 +3,32 @@
 use glam::DVec2;
 
 use crate::domain::Domain;
+use crate::relaxed::RelaxationTable;
+use crate::sampling::SamplingError;
 use crate::seed::SplitMix64;
 use crate::tables::Tables;
-use crate::tiling::MAX_LEVEL;
 use crate::tiling::cyclotomic::SQRT_3;
+use crate::tiling::{MAX_LEVEL, TileCounts};
 use crate::walk::batch::tile_counts;
 use crate::walk::frame::Frame;
 use crate::walk::node::{ExactPoint, Node};
+use crate::walk::relaxed::FIRST_RELAXED_LEVEL;
 
 /// The level of the few tiles at which every walk of a placement starts.
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
 
 /// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
-/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]); no more than 9
-/// such points fit.
-const MAX_FRONTIER: usize = 12;
+/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
+/// than 9 fit; relaxed points can move in from 0.33 edges farther, which admits 13.
+const MAX_FRONTIER: usize = 24;
 
 /// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times
 /// that, 258 diagonals: roots under 128 domain widths give measurably biased sets, because a window
 /// is then likely to hold one of the root's oldest points.
 const FRONTIER_EDGE: f64 = 4.0 / 3.0;
+
+/// Successive tile counts differ by a factor of at most 14, edges by its root; a little more for rounding.
+const MAX_STRETCH: f64 = 3.75;
 
 /// No descendant of a tile is farther from its centre than this many of its edges: children are at
 /// most 2 cos 15° child edges away, and 2 cos 15°/(λ − 1) = 1/√2 exactly.
@@ -53,6 +59,8 @@ pub struct Placement<'t> {
     frontier: [Option<Node>; MAX_FRONTIER],
     /// The reference tile's centre, relative to the domain's least corner.
     origin: DVec2,
+    /// The edge of the frontier's tiles, in diagonals of the domain, at least [`FRONTIER_EDGE`].
+    frontier_edge: f64,
     /// For each level: the vector of half an edge along the tiling's x axis.
     half_edges: [DVec2; MAX_LEVEL + 1],
     /// For each level: [`REACH`] of its edges, in units.
@@ -70,17 +78,79 @@ impl Placement<'static> {
     pub fn new(domain: Domain, seed: u64) -> Self {
         Self::with_tables(domain, seed, Tables::built_in())
     }
+
+    /// A placement whose scale makes a constant density a *complete level* of the tiling.
+    ///
+    /// At `density` points a squared unit the threshold T is the tile count of a level, and the points
+    /// are all tile centres of that level: far more even than between levels (least distance 0.96 of the
+    /// hexagonal lattice's, and integration as accurate as with the best low-discrepancy sets), for
+    /// any density. With an importance, pass the density that its most common value will get.
+    ///
+    /// Position and rotation stay random, so points are as unbiased a sample as under
+    /// [`new`](Self::new); only the scale is no longer the domain's.
+    ///
+    /// ```
+    /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling};
+    /// let placement = Placement::aligned(Domain::unit(), 7, 1000.0)?;
+    /// let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Density(1000.0))?;
+    /// assert!((sampling.expected_points().unwrap() - 1000.0).abs() < 1e-9);
+    /// # Ok::<(), twelvefold::SamplingError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SamplingError::Amount`] unless the density is finite and positive, [`SamplingError::TooDense`]
+    /// past the deepest level.
+    pub fn aligned(domain: Domain, seed: u64, density: f64) -> Result<Self, SamplingError> {
+        Self::aligned_with_tables(domain, seed, density, Tables::built_in())
+    }
 }
 
 impl<'t> Placement<'t> {
     /// The same with other tables. Tables of another depth but the same digits give the same points.
     #[must_use]
     pub fn with_tables(domain: Domain, seed: u64, tables: Tables<'t>) -> Self {
+        Self::with_scale(domain, seed, FRONTIER_EDGE, tables)
+    }
+
+    /// [`aligned`](Placement::aligned) with other tables.
+    ///
+    /// # Errors
+    /// As [`aligned`](Placement::aligned).
+    pub fn aligned_with_tables(
+        domain: Domain,
+        seed: u64,
+        density: f64,
+        tables: Tables<'t>,
+    ) -> Result<Self, SamplingError> {
+        if !(density > 0.0 && density.is_finite()) {
+            return Err(SamplingError::Amount { value: density });
+        }
+        // The smallest level that makes the root no smaller than it is without alignment: at most λ
+        // times as large, so that the frontier is no larger than it is there.
+        let diagonal = domain.diagonal();
+        let least_edge = frontier_edges_per_root() * FRONTIER_EDGE * diagonal;
+        let least_tiles = density * (0.5 * SQRT_3 * least_edge * least_edge);
+        let tiles = TileCounts::HEXAGON
+            .all()
+            .iter()
+            .map(|tiles| *tiles as f64)
+            .find(|tiles| *tiles >= least_tiles)
+            .ok_or(SamplingError::TooDense { near: domain.region().centre })?;
+        let stretch = libm::sqrt(tiles / least_tiles);
+        if !stretch.is_finite() || stretch > MAX_STRETCH {
+            // Less than one point in the whole root: any scale is as good.
+            return Ok(Self::with_tables(domain, seed, tables));
+        }
+        Ok(Self::with_scale(domain, seed, FRONTIER_EDGE * stretch, tables))
+    }
+
+    /// The placement whose frontier tiles have an edge of `frontier_edge` diagonals of the domain.
+    fn with_scale(domain: Domain, seed: u64, frontier_edge: f64, tables: Tables<'t>) -> Self {
         let mut random = SplitMix64::new(seed);
         let axis = DVec2::from_array(random.direction());
         // The domain's centre in root edges. Density ∝ (1 − r²)² towards the rim rather than uniform:
         // the bias that a finite root leaves is ten times smaller.
-        let root_edge = frontier_edges_per_root() * FRONTIER_EDGE * domain.diagonal();
+        let root_edge = frontier_edges_per_root() * frontier_edge * domain.diagonal();
         let range = INNER_RADIUS - 0.5 * domain.diagonal() / root_edge;
         let centre = range * DVec2::from_array(random.in_disc(2));
         let rank_shift = random.unit();
@@ -91,11 +161,13 @@ impl<'t> Placement<'t> {
             rank_shift,
             frontier: [None; MAX_FRONTIER],
             origin: DVec2::ZERO,
+            frontier_edge,
             half_edges: core::array::from_fn(|level| {
                 0.5 * (root_edge / lambda_power(level)) * axis
             }),
             reach: core::array::from_fn(|level| REACH * root_edge / lambda_power(level)),
-            slack: domain.diagonal() * 1e-6 + domain.min().abs().max_element() * 1e-15,
+            slack: domain.diagonal() * 1e-6
+                + domain.min().abs().max(domain.max().abs()).max_element() * 1e-15,
             // A root `a` owns √3/2 squared edges.
             root_area: 0.5 * SQRT_3 * root_edge * root_edge,
         };
@@ -117,8 +189,11 @@ impl<'t> Placement<'t> {
             // Everything in edges of this level.
             let to_domain = centre * lambda_power(node.level.into()) - node.centre.to_dvec2();
             let half_diagonal =
-                0.5 / FRONTIER_EDGE / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
-            if to_domain.length() > REACH + half_diagonal + 1e-9 {
+                0.5 / self.frontier_edge / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
+            // Relaxed points move in from farther away.
+            let step = self.tables.relaxation().map_or(0.0, RelaxationTable::longest)
+                / lambda_power(usize::from(FIRST_RELAXED_LEVEL - node.level));
+            if to_domain.length() > REACH + half_diagonal + step + 1e-9 {
                 continue;
             }
             if node.level == FRONTIER_LEVEL {
@@ -166,8 +241,7 @@ impl<'t> Placement<'t> {
     }
 
     /// The tiles at which walks start.
-    #[cfg(test)]
-    pub(crate) fn frontier(&self) -> impl Iterator<Item = &Node> {
+    pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
         self.frontier.iter().flatten()
     }
 
@@ -191,9 +265,23 @@ impl<'t> Placement<'t> {
         self.root_area
     }
 
+    /// The greatest threshold T in ranks: the tile count of the deepest level.
+    pub(crate) fn greatest_threshold(&self) -> f64 {
+        TileCounts::HEXAGON.all()[MAX_LEVEL] as f64
+    }
+
     /// Half an edge of `level`, along the tiling's x axis, in units.
     pub(crate) fn half_edge(&self, level: u8) -> DVec2 {
         self.half_edges[usize::from(level)]
+    }
+
+    /// An edge of `level` that makes `rotation`·30° with the tiling's x axis, in units.
+    pub(crate) fn turned_edge(&self, level: u8, rotation: u8) -> DVec2 {
+        const H: f64 = 0.5 * SQRT_3;
+        const COSINES: [f64; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
+        let k = usize::from(rotation % 12);
+        let turn = DVec2::new(COSINES[k], COSINES[(k + 9) % 12]);
+        (2.0 * self.half_edge(level)).rotate(turn)
     }
 
     /// A node's centre, relative to the domain's least corner.

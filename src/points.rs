@@ -4,13 +4,18 @@ use crate::clip::ToCaller;
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
 use crate::walk::chunk::Chunk;
+use crate::walk::either::AnyTraversal;
 use crate::walk::scalar::Position;
-use crate::walk::traverse::Traversal;
 
-/// A point of the set.
+/// A point of the set. [`Sampling::weighted`] adds what estimates need: density and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<P> {
     /// Where it is, in the caller's units, inside the half-open domain.
+    ///
+    /// Relative to the domain's least corner, each coordinate is within 3 units in the last place of
+    /// the domain's diagonal (3ε · 2^⌊log₂ diagonal⌋, ε = 2⁻²³ for `Vec2` and 2⁻⁵² for `DVec2`) of exact
+    /// arithmetic, at every level; the largest error met in the tests is 2.5. A corner other than the
+    /// origin adds the rounding of that sum.
     pub position: P,
     /// Its index in the placement's endless sequence. Unique in a placement, and the same at every
     /// density at which the point is present.
@@ -33,7 +38,7 @@ pub struct Filled {
 #[derive(Clone, Debug)]
 pub struct Points<'a, I, P: Position> {
     sampling: Sampling<'a, I>,
-    traversal: Traversal,
+    traversal: AnyTraversal,
     /// The next entry of the batch.
     entry: usize,
     chunk: Chunk<P::Scalar>,
@@ -47,7 +52,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     pub(crate) fn new(sampling: Sampling<'a, I>) -> Result<Self, SamplingError> {
         Ok(Self {
             to_caller: ToCaller::new(&sampling.placement().domain())?,
-            traversal: Traversal::new(&sampling),
+            traversal: AnyTraversal::new(&sampling),
             sampling,
             entry: 0,
             chunk: Chunk::new(),
@@ -66,8 +71,7 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
                 self.entry = self.traversal.batch().start;
             }
             let Self { sampling, traversal, chunk, to_caller, .. } = self;
-            let (clip, batch) = (traversal.clip(), traversal.batch());
-            self.entry = chunk.select::<I, P>(sampling, clip, to_caller, batch, self.entry)?;
+            self.entry = traversal.select::<I, P>(sampling, to_caller, self.entry, chunk)?;
             self.chunk.pack();
             if self.chunk.len > 0 {
                 self.next = 0;

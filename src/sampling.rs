@@ -10,11 +10,12 @@ use crate::domain::{Domain, Region};
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::points::{Filled, Points, Sample};
+use crate::relaxed::RelaxationTable;
 use crate::tiling::{MAX_LEVEL, TileCounts};
 use crate::walk;
+use crate::walk::either::AnyTraversal;
 use crate::walk::scalar::{Coordinate, Position};
 use crate::walk::share::Share;
-use crate::walk::traverse::Traversal;
 
 /// How many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,8 @@ pub enum SamplingError {
     },
     /// A count was asked for, but the importance does not know its integral.
     UnknownIntegral,
-    /// A count was asked for, but the importance is 0 everywhere.
+    /// A count was asked for, but the importance is 0 everywhere, or so close to it that no finite
+    /// density makes up for it.
     NoImportance,
     /// More points are expected than [`Limits::points`].
     TooManyPoints {
@@ -91,6 +93,8 @@ pub enum SamplingError {
         /// The limit.
         limit: u64,
     },
+    /// The placement's tables have no relaxed offsets.
+    NoRelaxation,
     /// There is no such part.
     Shard {
         /// Which part.
@@ -98,7 +102,9 @@ pub enum SamplingError {
         /// Of how many.
         of: usize,
     },
-    /// No number of the position type lies in the domain: it is too small, too far from the origin.
+    /// The position type cannot tell the points of the domain apart: it is too far from the origin for
+    /// any number of this precision to lie in it, or its sizes leave the precision's range (for `f32`,
+    /// a diagonal outside of some 10⁻³⁰ … 10³⁷).
     Precision,
 }
 
@@ -109,7 +115,7 @@ impl fmt::Display for SamplingError {
             Self::UnknownIntegral => f.write_str(
                 "a number of points needs an importance that knows its integral over the domain",
             ),
-            Self::NoImportance => f.write_str("the importance is zero everywhere"),
+            Self::NoImportance => f.write_str("the importance is zero everywhere, or next to it"),
             Self::TooManyPoints { expected, limit } => {
                 write!(f, "about {expected:.0} points are expected, the limit is {limit}")
             }
@@ -127,9 +133,10 @@ impl fmt::Display for SamplingError {
                 at.x, at.y
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
+            Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
             Self::Shard { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
             Self::Precision => {
-                f.write_str("no number of this precision lies in the domain; use DVec2")
+                f.write_str("positions of this precision cannot resolve the domain; use DVec2")
             }
         }
     }
@@ -149,6 +156,7 @@ pub struct Sampling<'a, I> {
     scale: RankScale,
     expected: Option<f64>,
     limits: Limits,
+    relaxed: bool,
     clip: Clip,
     share: Option<Share>,
 }
@@ -195,7 +203,9 @@ impl<'a, I: Importance> Sampling<'a, I> {
             Amount::Points(0.0) => 0.0,
             Amount::Points(points) => match integral {
                 None => return Err(SamplingError::UnknownIntegral),
-                Some(integral) if integral > 0.0 => points / integral,
+                Some(integral) if integral > 0.0 && (points / integral).is_finite() => {
+                    points / integral
+                }
                 Some(_) => return Err(SamplingError::NoImportance),
             },
         };
@@ -209,6 +219,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
             },
             expected,
             limits,
+            relaxed: false,
             clip: Clip::domain(&domain),
             share: None,
         };
@@ -221,6 +232,29 @@ impl<'a, I: Importance> Sampling<'a, I> {
             return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
         }
         Ok(sampling)
+    }
+
+    /// The same points, moved aside by the tables' relaxed offsets, so that they are even at every
+    /// density.
+    ///
+    /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
+    /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
+    /// (by 4 % and more). Not progressive either: a point's place depends on the density around it.
+    /// Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
+    /// points stay at their centres.
+    ///
+    /// # Errors
+    /// [`SamplingError::NoRelaxation`] if the placement's tables have no relaxed offsets.
+    pub fn relaxed(self) -> Result<Self, SamplingError> {
+        match self.placement.tables().relaxation() {
+            Some(_) => Ok(Self { relaxed: true, ..self }),
+            None => Err(SamplingError::NoRelaxation),
+        }
+    }
+
+    /// The offsets by which points are moved, in relaxed mode.
+    pub(crate) fn relaxation(&self) -> Option<&'a RelaxationTable<'a>> {
+        if self.relaxed { self.placement.tables().relaxation() } else { None }
     }
 
     /// The points of this set that lie in a half-open rectangle of the caller's coordinates: exactly
@@ -260,7 +294,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
         let share = expected * self.clip.area() / domain.area() / (32.0 * parts as f64);
         let grain = (share as u64).max(256);
         let measuring = Self { share: Some(Share::nothing(grain)), ..*self };
-        let mut traversal = Traversal::new(&measuring);
+        let mut traversal = AnyTraversal::new(&measuring);
         while traversal.advance(&measuring)? {}
         Ok((grain, traversal.passed()))
     }
@@ -309,6 +343,12 @@ impl<'a, I: Importance> Sampling<'a, I> {
     #[must_use]
     pub fn density(&self) -> f64 {
         self.scale.magnification / self.placement.ranks_per_density()
+    }
+
+    /// The same set with T = importance · `magnification` and this u, for tests that need T exact.
+    #[cfg(test)]
+    pub(crate) fn with_scale(self, magnification: f64, shift: f64) -> Self {
+        Self { scale: RankScale { magnification, shift }, ..self }
     }
 
     /// From importance to ranks.
@@ -397,6 +437,16 @@ pub(crate) struct RankScale {
 }
 
 impl RankScale {
+    /// The importance that a rank needs.
+    pub(crate) fn importance_of(self, rank: u64) -> f64 {
+        rank as f64 / self.magnification
+    }
+
+    /// T, in rank units.
+    pub(crate) fn threshold(self, value: f64) -> f64 {
+        value * self.magnification
+    }
+
     /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
     /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
     #[inline]
@@ -414,6 +464,16 @@ impl RankScale {
         value * self.magnification - self.shift
     }
 
+    /// rank + u: a point's place in the sequence.
+    pub(crate) fn shifted(self, rank: u64) -> f64 {
+        rank as f64 + self.shift
+    }
+
+    /// z = (rank + u)/T, below 1 for an accepted point.
+    pub(crate) fn place(self, rank: u64, value: f64) -> f64 {
+        self.shifted(rank) / (value * self.magnification)
+    }
+
     /// `rank < limit(value)`, for a rank below 2⁶³.
     #[inline(always)]
     pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {
@@ -422,5 +482,89 @@ impl RankScale {
         // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbour, but so coarse a
         // limit is an integer itself.
         if rank < 1 << 53 { (rank as i64 as f64) < limit } else { rank < self.limit(value) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The number of integers k ≥ 0 with k < x, for a finite x, by integer arithmetic on its bits.
+    fn integers_below(x: f64) -> u64 {
+        if x <= 0.0 {
+            return 0;
+        }
+        let bits = x.to_bits();
+        let (exponent, fraction) = ((bits >> 52) as i32, bits & ((1 << 52) - 1));
+        // x = mantissa · 2^shift, but for subnormal numbers, which are below 1 anyway.
+        let (mantissa, shift) = (fraction | 1 << 52, exponent - 1075);
+        match shift {
+            ..=-53 => 1,
+            -52..=-1 => {
+                let whole = mantissa >> -shift;
+                whole + u64::from(whole << -shift != mantissa)
+            }
+            0..=11 => mantissa << shift,
+            _ => u64::MAX,
+        }
+    }
+
+    fn check(scale: RankScale, value: f64) {
+        let exact = integers_below(value * scale.magnification - scale.shift);
+        let limit = scale.limit(value);
+        assert_eq!(limit, exact, "{scale:?} {value}");
+        for rank in
+            [0, 1, limit.saturating_sub(2), limit.saturating_sub(1), limit, limit.saturating_add(1)]
+        {
+            if rank < 1 << 62 {
+                assert_eq!(scale.accepts(rank, value), rank < limit, "{scale:?} {value} {rank}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_are_exact_on_below_and_above_every_tile_count() {
+        for tiles in TileCounts::HEXAGON.all() {
+            let count = *tiles as f64;
+            let near = [count.next_down(), count, count.next_up(), count - 1.0, count + 1.0];
+            for t in near.into_iter().filter(|t| *t >= 0.0) {
+                for shift in [0.0, f64::MIN_POSITIVE, 0.5, 1.0f64.next_down()] {
+                    check(RankScale { magnification: t, shift }, 1.0);
+                    check(RankScale { magnification: 2.0 * t, shift }, 0.5);
+                }
+            }
+            if *tiles < 1 << 53 {
+                let limit = |t| RankScale { magnification: t, shift: 0.0 }.limit(1.0);
+                assert_eq!(limit(count), *tiles);
+                assert_eq!(limit(count.next_up()), *tiles + 1);
+                let tie = RankScale { magnification: count, shift: 0.0 };
+                assert!(tie.accepts(*tiles - 1, 1.0) && !tie.accepts(*tiles, 1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn broken_values_admit_nothing_or_everything_but_never_wrap() {
+        let scale = RankScale { magnification: 1e9, shift: 0.25 };
+        for value in [f64::NAN, -1.0, -0.0, 0.0, f64::NEG_INFINITY, 5e-324, 1e-310] {
+            assert_eq!(scale.limit(value), 0, "{value}");
+            assert!(!scale.accepts(0, value), "{value}");
+        }
+        for value in [f64::INFINITY, f64::MAX, 1e300] {
+            assert_eq!(scale.limit(value), u64::MAX, "{value}");
+            assert!(scale.accepts(1 << 62, value), "{value}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn limits_count_the_integers_below(
+            value in prop_oneof![Just(1.0), 0.0..1e3f64, any::<f64>().prop_filter("sign", |v| *v >= 0.0)],
+            magnification in prop_oneof![1.0..100.0f64, 1e0..1e19f64, (0u64..1 << 60).prop_map(|n| n as f64)],
+            shift in prop_oneof![Just(0.0), 0.0..1.0f64],
+        ) {
+            check(RankScale { magnification, shift }, value);
+        }
     }
 }

@@ -2,8 +2,10 @@
 
 use core::fmt;
 
+use crate::bake::relaxation::RelaxationError;
 use crate::bake::wire::{self, BlockBytes, Document};
 use crate::bake::{self, MAX_DEPTH};
+use crate::relaxed::RelaxationTable;
 use crate::tiling::subdivide::MAX_CHILDREN;
 use crate::tiling::{Digits, DigitsError, MAX_LEVEL, Rules, TileType};
 use crate::walk::node::ExactPoint;
@@ -38,11 +40,8 @@ pub enum TablesError {
         /// The depth found.
         depth: u8,
     },
-    /// Offsets that depend on the density phase, which this version cannot use.
-    Phases {
-        /// The number of phase slots found.
-        phases: u16,
-    },
+    /// The relaxed offsets break a rule.
+    Relaxation(RelaxationError),
     /// The digit assignment breaks a rule.
     Digits(DigitsError),
     /// The blocks of this type are not what the digits and the depth make.
@@ -65,9 +64,7 @@ impl fmt::Display for TablesError {
             Self::Depth { depth } => {
                 write!(f, "baked depth {depth} is not between 1 and {MAX_DEPTH}")
             }
-            Self::Phases { phases } => {
-                write!(f, "{phases} phase slots, but this build reads fixed centres only")
-            }
+            Self::Relaxation(error) => write!(f, "relaxed offsets: {error}"),
             Self::Digits(error) => write!(f, "digit assignment: {error}"),
             Self::Block { kind } => {
                 write!(f, "the block of type {} does not follow from the rules", kind.letter())
@@ -84,6 +81,7 @@ pub struct Tables<'a> {
     bytes: &'a [u8],
     depth: u8,
     digits: Digits,
+    relaxation: Option<RelaxationTable<'a>>,
     /// Type and rotation of each child, by parent type and digit.
     child_kinds: [[(TileType, u8); MAX_CHILDREN]; 4],
     blocks: [BlockTable<'a>; 4],
@@ -118,7 +116,13 @@ impl<'a> Tables<'a> {
         }
         let tables = Self::view(bytes)?;
         let rules = Rules::new(&tables.digits).map_err(TablesError::Digits)?;
-        let baked = bake::bake(&rules, tables.depth).map_err(|_| TablesError::Malformed)?;
+        let relaxation = tables
+            .relaxation
+            .map(|table| table.to_relaxation(tables.digits))
+            .transpose()
+            .map_err(TablesError::Relaxation)?;
+        let baked = bake::bake(&rules, tables.depth, relaxation.as_ref())
+            .map_err(|_| TablesError::Malformed)?;
         if baked != bytes {
             let expected = Tables::view(&baked)?;
             for kind in TileType::ALL {
@@ -135,16 +139,13 @@ impl<'a> Tables<'a> {
     fn view(bytes: &'a [u8]) -> Result<Self, TablesError> {
         let document =
             wire::without_checksum(bytes).ok_or(TablesError::Truncated { length: bytes.len() })?;
-        let Document { magic: _, version, depth, phases, digits, children, blocks } =
+        let Document { magic: _, version, depth, digits, children, blocks, provenance, layers } =
             wire::decode(document).ok_or(TablesError::Malformed)?;
         if version != wire::VERSION {
             return Err(TablesError::Version { found: version, expected: wire::VERSION });
         }
         if !(1..=MAX_DEPTH).contains(&depth) {
             return Err(TablesError::Depth { depth });
-        }
-        if phases != 0 {
-            return Err(TablesError::Phases { phases });
         }
         let [a, b, c, d] = TileType::ALL.map(|kind| {
             BlockTable::new(blocks[kind.index()], kind, depth).ok_or(TablesError::Block { kind })
@@ -157,7 +158,8 @@ impl<'a> Tables<'a> {
             }
         }
         let digits = Digits::from_derivation_order(digits);
-        Ok(Self { bytes, depth, digits, child_kinds, blocks: [a?, b?, c?, d?] })
+        let relaxation = RelaxationTable::new(provenance, &layers).ok_or(TablesError::Malformed)?;
+        Ok(Self { bytes, depth, digits, relaxation, child_kinds, blocks: [a?, b?, c?, d?] })
     }
 
     /// The bytes of the table file.
@@ -188,6 +190,12 @@ impl<'a> Tables<'a> {
     /// Type and relative rotation of each child, by digit.
     pub(crate) fn child_kinds(&self, parent: TileType) -> &[(TileType, u8)] {
         &self.child_kinds[parent.index()][..parent.child_count()]
+    }
+
+    /// The relaxed offsets, if these tables have any.
+    #[must_use]
+    pub fn relaxation(&self) -> Option<&RelaxationTable<'a>> {
+        self.relaxation.as_ref()
     }
 
     /// The block of a type.

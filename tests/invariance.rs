@@ -82,12 +82,16 @@ proptest! {
             };
             all.into_iter().filter(|(_, x, y)| inside(*x, *y)).collect()
         };
-        let clipped = whole.clipped(rectangle);
-        prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&whole)));
-        prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&whole)));
-        let clipped = uniform.clipped(rectangle);
-        prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&uniform)));
-        prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&uniform)));
+        for whole in [whole, whole.relaxed().unwrap()] {
+            let clipped = whole.clipped(rectangle);
+            prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&whole)));
+            prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&whole)));
+        }
+        for uniform in [uniform, uniform.relaxed().unwrap()] {
+            let clipped = uniform.clipped(rectangle);
+            prop_assert_eq!(sorted::<Vec2, _>(&clipped), kept(sorted::<Vec2, _>(&uniform)));
+            prop_assert_eq!(sorted::<DVec2, _>(&clipped), kept(sorted::<DVec2, _>(&uniform)));
+        }
     }
 
     #[test]
@@ -102,7 +106,8 @@ proptest! {
         let map = map(size.0, size.1, contrast, seed);
         let placement = Placement::new(map.domain(), seed);
         let whole = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
-        for whole in [whole, whole.clipped(rectangle_in(&map.domain(), corners))] {
+        let clipped = whole.clipped(rectangle_in(&map.domain(), corners));
+        for whole in [whole, clipped, whole.relaxed().unwrap(), clipped.relaxed().unwrap()] {
             let parts: Vec<Bits> = (0..of)
                 .flat_map(|i| points::<Vec2, _>(&whole.shard(i, of).unwrap()))
                 .collect();
@@ -117,10 +122,12 @@ proptest! {
         size in (1usize..30, 1usize..30),
         count in 1.0..6000.0f64,
         room in 0.0..1.5f64,
+        relaxed: bool,
     ) {
         let map = map(size.0, size.1, 9.0, seed).over(domain);
         let placement = Placement::new(domain, seed);
         let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let sampling = if relaxed { sampling.relaxed().unwrap() } else { sampling };
         let all: Vec<Vec2> =
             sampling.points().unwrap().map(|sample| sample.unwrap().position).collect();
 
@@ -152,7 +159,7 @@ proptest! {
         let map = map(size.0, size.1, 30.0, seed);
         let mut expected = None;
         for depth in 1..=bake::MAX_DEPTH {
-            let bytes = bake::bake(&Tables::built_in().rules(), depth).unwrap();
+            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
             let tables = Tables::from_bytes(&bytes).unwrap();
             let placement = Placement::with_tables(map.domain(), seed, tables);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();

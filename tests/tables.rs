@@ -15,13 +15,13 @@ fn the_built_in_tables_are_the_baked_rules() {
     let built_in = Tables::built_in();
     let digits = Digits::parse(include_str!("../tables/digits.txt")).unwrap();
     assert_eq!(built_in.rules(), Rules::new(&digits).unwrap());
-    assert_eq!(built_in.as_bytes(), bake::bake(&rules(), built_in.depth()).unwrap());
+    assert_eq!(built_in.as_bytes(), bake::bake(&rules(), built_in.depth(), None).unwrap());
     assert!(Tables::from_bytes(built_in.as_bytes()).is_ok());
 }
 
 #[test]
 fn the_default_depth_has_the_recorded_hash() {
-    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH).unwrap();
+    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, None).unwrap();
     let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     let recorded = include_str!("../tables/baked.sha256");
     assert_eq!(recorded.split_whitespace().next(), Some(hash.as_str()));
@@ -30,7 +30,7 @@ fn the_default_depth_has_the_recorded_hash() {
 #[test]
 fn blocks_have_the_counts_of_their_levels_and_ascending_thresholds() {
     for depth in 1..=bake::MAX_DEPTH {
-        let bytes = bake::bake(&rules(), depth).unwrap();
+        let bytes = bake::bake(&rules(), depth, None).unwrap();
         let tables = Tables::from_bytes(&bytes).unwrap();
         assert_eq!(tables.depth(), depth);
         for kind in TileType::ALL {
@@ -50,13 +50,13 @@ fn blocks_have_the_counts_of_their_levels_and_ascending_thresholds() {
 #[test]
 fn other_depths_are_refused() {
     for depth in [0, 5, 255] {
-        assert_eq!(bake::bake(&rules(), depth), Err(BakeError::Depth { depth }));
+        assert_eq!(bake::bake(&rules(), depth, None), Err(BakeError::Depth { depth }));
     }
 }
 
 #[test]
 fn every_flipped_byte_is_an_error() {
-    let bytes = bake::bake(&rules(), 1).unwrap();
+    let bytes = bake::bake(&rules(), 1, None).unwrap();
     for i in 0..bytes.len() {
         for flip in [1, 0x80, 0xff] {
             let mut damaged = bytes.clone();
@@ -68,7 +68,7 @@ fn every_flipped_byte_is_an_error() {
 
 #[test]
 fn a_flipped_byte_under_a_matching_checksum_is_an_error_too() {
-    let bytes = bake::bake(&rules(), 1).unwrap();
+    let bytes = bake::bake(&rules(), 1, None).unwrap();
     let length = bytes.len() - 4;
     for i in 0..length {
         let mut forged = bytes[..length].to_vec();
@@ -80,7 +80,7 @@ fn a_flipped_byte_under_a_matching_checksum_is_an_error_too() {
 
 #[test]
 fn every_truncation_and_any_trailing_byte_is_an_error() {
-    let bytes = bake::bake(&rules(), 1).unwrap();
+    let bytes = bake::bake(&rules(), 1, None).unwrap();
     for length in 0..bytes.len() {
         assert!(Tables::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
     }

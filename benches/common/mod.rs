@@ -99,7 +99,7 @@ pub(crate) fn memcpy<'a>() -> Contender<'a> {
 pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
     let mut all = vec![memcpy()];
     for depth in 2..=bake::MAX_DEPTH {
-        let bytes = bake::bake(&Tables::built_in().rules(), depth).expect("a depth in range");
+        let bytes = bake::bake(&Tables::built_in().rules(), depth, None).expect("a depth in range");
         // Kept for the whole run.
         let tables = Tables::from_bytes(bytes.leak()).expect("baked just now");
         let name = format!("twelvefold, baked depth {depth}");

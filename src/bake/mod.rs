@@ -4,6 +4,8 @@
 //! only.
 
 pub mod block;
+pub mod class;
+pub mod relaxation;
 pub mod wire;
 
 use alloc::vec::Vec;
@@ -11,6 +13,7 @@ use core::fmt;
 
 use crate::tiling::{Rules, TileType};
 use block::Block;
+use relaxation::Relaxation;
 
 /// The deepest blocks that can be baked: 35,113 and 37,829 entries a type. One level more and rank
 /// coefficients leave 16 bits.
@@ -28,6 +31,8 @@ pub enum BakeError {
         /// The depth asked for.
         depth: u8,
     },
+    /// The relaxed offsets were trained for another digit assignment; retrain them.
+    OtherDigits,
     /// A number left its baked width: rules of another shape than equation 1's.
     Range,
 }
@@ -38,6 +43,9 @@ impl fmt::Display for BakeError {
             Self::Depth { depth } => {
                 write!(f, "baked depth {depth} is not between 1 and {MAX_DEPTH}")
             }
+            Self::OtherDigits => f.write_str(
+                "the relaxed offsets were trained for other digits: train them again, or remove them",
+            ),
             Self::Range => f.write_str("a baked number does not fit its field"),
         }
     }
@@ -45,19 +53,28 @@ impl fmt::Display for BakeError {
 
 impl core::error::Error for BakeError {}
 
-/// Subdivides each tile type `depth` times and encodes the blocks: the bytes of a table file.
+/// Subdivides each tile type `depth` times and encodes the blocks, and relaxed offsets if there are
+/// any: the bytes of a table file.
 ///
-/// The same rules and depth give the same bytes on every platform.
+/// The same rules, depth and offsets give the same bytes on every platform.
 ///
 /// # Errors
-/// [`BakeError::Depth`] for a depth outside 1..=[`MAX_DEPTH`].
-pub fn bake(rules: &Rules, depth: u8) -> Result<Vec<u8>, BakeError> {
+/// [`BakeError::Depth`] for a depth outside 1..=[`MAX_DEPTH`]; [`BakeError::OtherDigits`] for offsets
+/// that belong to other rules.
+pub fn bake(
+    rules: &Rules,
+    depth: u8,
+    relaxation: Option<&Relaxation>,
+) -> Result<Vec<u8>, BakeError> {
+    if relaxation.is_some_and(|relaxation| !relaxation.fits(rules.digits())) {
+        return Err(BakeError::OtherDigits);
+    }
     let blocks = blocks(rules, depth)?;
-    wire::encode(rules, depth, &blocks)
+    wire::encode(rules, depth, &blocks, relaxation)
 }
 
 /// The blocks of all four types.
-pub(crate) fn blocks(rules: &Rules, depth: u8) -> Result<[Block; 4], BakeError> {
+fn blocks(rules: &Rules, depth: u8) -> Result<[Block; 4], BakeError> {
     if !(1..=MAX_DEPTH).contains(&depth) {
         return Err(BakeError::Depth { depth });
     }

@@ -9,14 +9,16 @@ use alloc::vec::Vec;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
 use serde::{Deserialize, Serialize};
 
-use super::{BakeError, block::Block};
+use super::BakeError;
+use super::block::Block;
+use super::relaxation::{Layer, Relaxation, Slot};
 use crate::tiling::{Rules, TileType};
 
 /// First bytes of every table file.
 pub(crate) const MAGIC: [u8; 8] = *b"12fold\r\n";
 
 /// Format version, raised by every change of layout or meaning.
-pub(crate) const VERSION: u16 = 1;
+pub(crate) const VERSION: u16 = 2;
 
 /// Largest document that is looked at: depth 4 needs 5.3 MB, and room is left for relaxed offsets.
 const MAX_BYTES: usize = 1 << 26;
@@ -29,19 +31,67 @@ fn config() -> Configuration<LittleEndian, Fixint, Limit<MAX_BYTES>> {
 }
 
 /// The document.
-#[derive(Serialize, Deserialize, Debug, PartialEq, Eq)]
+#[derive(Serialize, Deserialize, Debug, PartialEq)]
 pub(crate) struct Document<'a> {
     pub(crate) magic: [u8; 8],
     pub(crate) version: u16,
     pub(crate) depth: u8,
-    /// Slots of the density phase Ψ for which offsets are stored; 0: fixed centres only.
-    pub(crate) phases: u16,
     /// The digit assignment, a row a parent type, in derivation order.
     pub(crate) digits: [[u8; 14]; 4],
     /// (type, rotation in units of 30°) of each child, a row a parent type, by digit; 0 past the last.
     pub(crate) children: [[(u8, u8); 14]; 4],
     #[serde(borrow)]
     pub(crate) blocks: [BlockBytes<'a>; 4],
+    /// How the relaxed offsets were made; empty when there are none.
+    pub(crate) provenance: &'a str,
+    /// The smooth and the rough layer of relaxed offsets. A layer without slots is absent.
+    #[serde(borrow)]
+    pub(crate) layers: [LayerBytes<'a>; 2],
+}
+
+/// One layer of relaxed offsets.
+#[derive(Serialize, Deserialize, Debug, PartialEq, Clone, Copy, Default)]
+pub(crate) struct LayerBytes<'a> {
+    /// A bound on the length of every vector, in edges of a point's level.
+    pub(crate) longest: f64,
+    /// A record a slot of the density phase, see [`slot_record`].
+    pub(crate) slots: &'a [u8],
+    /// All slots' vectors, i8 pairs, in the order of their classes.
+    pub(crate) vectors: &'a [u8],
+}
+
+/// Bytes of a slot's record.
+pub(crate) const SLOT_BYTES: usize = 16;
+
+/// τ (f32), scale (f32), index of the first vector (u32), generations · 2²⁴ + number of vectors (u32).
+fn slot_record(slot: &Slot, start: usize) -> Result<[u8; SLOT_BYTES], BakeError> {
+    let number = |n: usize| u32::try_from(n).map_err(|_| BakeError::Range);
+    let count = number(slot.vectors.len())?;
+    if count >> 24 != 0 {
+        return Err(BakeError::Range);
+    }
+    let fields = [
+        slot.tau.to_le_bytes(),
+        slot.scale.to_le_bytes(),
+        number(start)?.to_le_bytes(),
+        (u32::from(slot.generations) << 24 | count).to_le_bytes(),
+    ];
+    let mut record = [0; SLOT_BYTES];
+    for (bytes, field) in record.chunks_exact_mut(4).zip(fields) {
+        bytes.copy_from_slice(&field);
+    }
+    Ok(record)
+}
+
+/// Records, vectors and the length of the longest vector of a layer.
+fn layer_columns(layer: &Layer) -> Result<(Vec<u8>, Vec<u8>, f64), BakeError> {
+    let (mut records, mut vectors, mut longest) = (Vec::new(), Vec::new(), 0.0f64);
+    for slot in layer.slots() {
+        records.extend(slot_record(slot, vectors.len() / 2)?);
+        vectors.extend(slot.vectors.iter().flatten().map(|component| *component as u8));
+        longest = longest.max(slot.longest());
+    }
+    Ok((records, vectors, longest))
 }
 
 /// One type's block. Each field is an array of little-endian values, one an entry.
@@ -96,8 +146,13 @@ impl BlockColumns {
     }
 }
 
-/// Encodes blocks of the given depth.
-pub(crate) fn encode(rules: &Rules, depth: u8, blocks: &[Block; 4]) -> Result<Vec<u8>, BakeError> {
+/// Encodes the rules, their blocks of the given depth, and relaxed offsets.
+pub(crate) fn encode(
+    rules: &Rules,
+    depth: u8,
+    blocks: &[Block; 4],
+    relaxation: Option<&Relaxation>,
+) -> Result<Vec<u8>, BakeError> {
     let [a, b, c, d] = blocks.each_ref().map(|block| BlockColumns::new(block, depth));
     let columns = [a?, b?, c?, d?];
     let mut children = [[(0, 0); 14]; 4];
@@ -106,14 +161,22 @@ pub(crate) fn encode(rules: &Rules, depth: u8, blocks: &[Block; 4]) -> Result<Ve
             *slot = (child.kind as u8, child.rotation);
         }
     }
+    let smooth = relaxation.map(|relaxation| layer_columns(&relaxation.smooth)).transpose()?;
+    let rough = relaxation.and_then(|r| r.rough.as_ref()).map(layer_columns).transpose()?;
+    let layers = [smooth, rough];
     let document = Document {
         magic: MAGIC,
         version: VERSION,
         depth,
-        phases: 0,
         digits: rules.digits().derivation_order(),
         children,
         blocks: columns.each_ref().map(BlockColumns::as_bytes),
+        provenance: relaxation.map_or("", |relaxation| &relaxation.provenance),
+        layers: layers.each_ref().map(|layer| {
+            layer.as_ref().map_or_else(LayerBytes::default, |(slots, vectors, longest)| {
+                LayerBytes { longest: *longest, slots, vectors }
+            })
+        }),
     };
     let mut bytes =
         bincode::serde::encode_to_vec(&document, config()).map_err(|_| BakeError::Range)?;

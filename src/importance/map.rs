@@ -27,6 +27,20 @@ pub enum InvalidPixels {
     ZeroAll,
 }
 
+impl InvalidPixels {
+    /// The value as it counts, or `None` if this policy does not admit it.
+    pub(crate) fn admit(self, value: f32) -> Option<f32> {
+        if (0.0..f32::INFINITY).contains(&value) {
+            return Some(value);
+        }
+        match self {
+            Self::ZeroAll => Some(0.0),
+            Self::ZeroNegative if value < 0.0 && value.is_finite() => Some(0.0),
+            _ => None,
+        }
+    }
+}
+
 /// Why pixels are no importance map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -130,6 +144,11 @@ impl ImageMap {
         Ok(Self { pixels, pyramid, row_sums, sum, domain, lattice })
     }
 
+    /// The pixels, without the rest.
+    pub(super) fn into_pixels(self) -> Vec<f32> {
+        self.pixels
+    }
+
     /// The same pixels stretched over another rectangle.
     #[must_use]
     pub fn over(mut self, domain: Domain) -> Self {
@@ -228,6 +247,11 @@ impl ImageMap {
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.sum / self.pixels.len() as f64
+    }
+
+    /// Column and row of the pixel under a point, clamped to the image.
+    pub(crate) fn texel(&self, at: DVec2) -> (usize, usize) {
+        self.lattice.texel(at)
     }
 }
 

@@ -4,6 +4,7 @@
 //! which a [`Sampling`](crate::Sampling) derives from the wanted [`Amount`](crate::Amount). Units of
 //! importance are the caller's; only ratios matter when a count is asked for.
 
+mod bilinear;
 mod constant;
 mod function;
 mod lookup;
@@ -11,12 +12,16 @@ mod map;
 mod pixels;
 mod probed;
 mod pyramid;
+mod stipple;
+pub(crate) mod sums;
 mod view;
 
+pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
 pub use function::Function;
 pub use map::{ImageMap, InvalidPixels, MapError};
 pub use probed::Probed;
+pub use stipple::StippleMap;
 pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
@@ -64,6 +69,34 @@ pub trait Importance {
         None
     }
 
+    /// Relaxed points only: the importance that the density phase is read from, `value` averaged at
+    /// the scale of the points' spacing. The same as `value` if that is smooth.
+    fn local(&self, at: DVec2) -> f64 {
+        self.value(at)
+    }
+
+    /// Relaxed points only: how much the importance varies at the scale of the spacing, from 0, smooth,
+    /// to 1.
+    fn detail(&self, at: DVec2) -> f64 {
+        let _ = at;
+        0.0
+    }
+
+    /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
+    /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
+    /// their side. Not farther from `moved` than [`longest_settling`](Self::longest_settling), unless
+    /// nearer to `centre`.
+    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        let _ = (centre, needed);
+        moved
+    }
+
+    /// The farthest that [`settle`](Self::settle) takes a point away from where relaxation moved it, in
+    /// units.
+    fn longest_settling(&self) -> f64 {
+        0.0
+    }
+
     /// Whether [`upper_bound`](Self::upper_bound) is a promise, as it must be unless the importance says
     /// otherwise: then a value above it is an error. Without a promise, points can be missing.
     fn bounds_hold(&self) -> bool {
@@ -93,6 +126,22 @@ impl<I: Importance + ?Sized> Importance for &I {
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
         (**self).integral(domain)
+    }
+
+    fn local(&self, at: DVec2) -> f64 {
+        (**self).local(at)
+    }
+
+    fn detail(&self, at: DVec2) -> f64 {
+        (**self).detail(at)
+    }
+
+    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        (**self).settle(centre, moved, needed)
+    }
+
+    fn longest_settling(&self) -> f64 {
+        (**self).longest_settling()
     }
 
     fn bounds_hold(&self) -> bool {

@@ -47,6 +47,14 @@ impl<S: Scalar> Chunk<S> {
         }
     }
 
+    /// Sets candidate `i`, a point, and with it all of the chunk to be packed.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, [x, y]: [S; 2], entry: usize) {
+        // A block has at most 37,829 entries.
+        (self.x[i], self.y[i], self.entry[i], self.keep[i]) = (x, y, entry as u16, 1);
+        self.packed = true;
+    }
+
     /// The entry of the block that candidate `i` is.
     #[inline(always)]
     pub(crate) fn entry(&self, i: usize) -> usize {
@@ -91,7 +99,7 @@ impl<S: Scalar> Chunk<S> {
 
     /// Marks what lies in the half-open domain, and in the clip's rectangle.
     #[inline(always)]
-    fn mark_inside<P: Position<Scalar = S>>(
+    pub(crate) fn mark_inside<P: Position<Scalar = S>>(
         &mut self,
         sampling: &Sampling<'_, impl Importance>,
         clip: &Clip,

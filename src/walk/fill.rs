@@ -2,9 +2,9 @@
 //! test is needed.
 
 use super::chunk::Chunk;
+use super::either::AnyTraversal;
 use super::frame::Segment;
 use super::scalar::{Position, Scalar};
-use super::traverse::Traversal;
 use super::vectors::Vectors;
 use crate::clip::ToCaller;
 use crate::importance::Importance;
@@ -98,7 +98,7 @@ pub(crate) fn fill<I: Importance, O: Output>(
 ) -> Result<Filled, SamplingError> {
     let vectors = Vectors::detect();
     let to_caller = ToCaller::new(&sampling.placement().domain())?;
-    let mut traversal = Traversal::new(sampling);
+    let mut traversal = AnyTraversal::new(sampling);
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {
@@ -118,7 +118,7 @@ pub(crate) fn fill<I: Importance, O: Output>(
 #[inline(always)]
 fn emit<I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
     sampling: &Sampling<'_, I>,
-    traversal: &Traversal,
+    traversal: &AnyTraversal,
     to_caller: &ToCaller<S>,
     chunk: &mut Chunk<S>,
     (output, written): (&mut O, &mut usize),
@@ -135,8 +135,7 @@ fn emit<I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
         return Ok(true);
     }
     while next < batch.end {
-        let clip = traversal.clip();
-        next = chunk.select::<I, O::Position>(sampling, clip, to_caller, batch, next)?;
+        next = traversal.select::<I, O::Position>(sampling, to_caller, next, chunk)?;
         if !append(chunk, output, written, to_caller) {
             return Ok(false);
         }

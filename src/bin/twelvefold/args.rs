@@ -4,11 +4,16 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec2;
+use twelvefold::measure::Window;
 use twelvefold::tiling::TileType;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
+
+/// The most points that are counted exactly: they are sorted in memory, 56 bytes each.
+pub(crate) const MAX_EXACT: u64 = 10_000_000;
 
 /// Well-spread points with a density you control, from a dodecagonal aperiodic tiling.
 #[derive(Debug, Parser)]
@@ -23,6 +28,28 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
     Stipple(StippleOptions),
+    /// Choose directions towards the light of an environment map, as CSV.
+    ///
+    /// The columns are x,y,z,pdf,red,green,blue: a direction of length 1, z up; its probability density
+    /// per steradian; and the map's radiance there. The light that falls on a surface is estimated by
+    /// the sum over all lines of radiance × cosine / (N × pdf).
+    ///
+    /// The map is a latitude-longitude image: the upper border is +z, and the left border and the
+    /// quarter, half and three quarters of the width are +x, +y, -x and -y.
+    Envmap(EnvmapOptions),
+    /// Train the relaxed offsets of `tables/relaxed.bin`, or measure those of a file.
+    Relax(RelaxOptions),
+    /// Measure how even a list of points is, as CSV.
+    ///
+    /// The table has the columns measure,value: star and L2 star discrepancy; least, first-percentile and
+    /// mean distance to the nearest point, in units of the hexagonal lattice's; mean power below half
+    /// the principal frequency, white noise = 1. With --image also, relative to the photograph's
+    /// darkness: the variance of counts in blocks of 64 points, Poisson = 1, and local distances.
+    Measure(MeasureOptions),
+    /// Measure error and time of this program's samples and of others in use.
+    ///
+    /// Writes report.md, report.csv and a picture for each scene. Takes some minutes.
+    Report(ReportOptions),
     /// Say what the tables inside this program hold.
     Tables,
     /// List every tile of one level of the tiling as CSV.
@@ -35,6 +62,124 @@ pub(crate) enum Command {
     Tiling(TilingOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
+}
+
+/// Options of `twelvefold report`.
+#[derive(Debug, Args)]
+pub(crate) struct ReportOptions {
+    /// The folder for the report, made if missing; files of the same names are replaced.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+
+    /// Environment maps, beside three built-in skies; negative radiance counts as zero.
+    #[arg(long = "environment", value_name = "MAP")]
+    pub(crate) environments: Vec<PathBuf>,
+
+    /// The photograph whose tone is followed [default: a drawing].
+    #[arg(long, value_name = "PHOTO")]
+    pub(crate) photo: Option<PathBuf>,
+
+    /// The greatest number of samples: smaller is sooner done.
+    #[arg(long, value_name = "N", default_value_t = 65_536)]
+    pub(crate) samples: usize,
+
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of `twelvefold measure`.
+#[derive(Debug, Args)]
+pub(crate) struct MeasureOptions {
+    /// The points: one a line, two coordinates, or columns named x and y.
+    pub(crate) points: PathBuf,
+
+    /// The rectangle in which the points are measured, as X,Y,WIDTH,HEIGHT [default: the photograph of
+    /// --image, or 0,0,1,1]. Points outside serve as neighbours only.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = window, allow_hyphen_values = true)]
+    pub(crate) window: Option<Window>,
+
+    /// A photograph whose darkness the points should follow.
+    #[arg(long, value_name = "PHOTO")]
+    pub(crate) image: Option<PathBuf>,
+
+    /// The points follow the photograph's light parts.
+    #[arg(long, requires = "image")]
+    pub(crate) invert: bool,
+
+    /// The points follow linear light.
+    #[arg(long, requires = "image")]
+    pub(crate) linear: bool,
+
+    /// Where the table goes [default: standard output].
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Also draw the periodogram as a PNG picture: up to twice the principal frequency on each axis.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) spectrum: Option<PathBuf>,
+
+    /// Also write the periodogram's radial mean as CSV.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) rings: Option<PathBuf>,
+}
+
+/// Reads a rectangle.
+fn window(text: &str) -> Result<Window, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, width, height]
+            if numbers.iter().all(|n| n.is_finite()) && width > 0.0 && height > 0.0 =>
+        {
+            Ok(Window::new(DVec2::new(x, y), DVec2::new(width, height)))
+        }
+        _ => Err("not four finite numbers X,Y,WIDTH,HEIGHT with a size above zero".to_owned()),
+    }
+}
+
+/// Options of `twelvefold envmap`.
+#[derive(Debug, Args)]
+pub(crate) struct EnvmapOptions {
+    /// The environment map: Radiance HDR or OpenEXR, told apart by content.
+    pub(crate) map: PathBuf,
+
+    /// How many directions, at most 10,000,000. Exactly as many are chosen.
+    #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_EXACT))]
+    pub(crate) directions: u64,
+
+    /// Where the table goes, or `-` for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// Chooses which of many equally good sets is taken.
+    #[arg(long, value_name = "SEED", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// What to do with negative radiance, which resampling leaves in real maps.
+    #[arg(long, value_enum, default_value_t = Negative::Reject)]
+    pub(crate) negative: Negative,
+
+    /// How directions are chosen.
+    #[arg(long, value_enum, default_value_t = Method::Progressive)]
+    pub(crate) method: Method,
+}
+
+/// A policy for negative radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Negative {
+    /// It is an error, which names the first pixel.
+    Reject,
+    /// It counts as zero.
+    Zero,
+}
+
+/// A way to choose directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// In an order of which each beginning is itself a good set.
+    Progressive,
+    /// A complete level of the tiling, warped: the least error for this number, in no useful order.
+    Warp,
 }
 
 /// Options of `twelvefold tiling`.
@@ -88,6 +233,16 @@ pub(crate) struct StippleOptions {
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]
     pub(crate) points: Option<u64>,
 
+    /// Exactly N dots, at most 10,000,000, in an order of which each beginning is itself a good
+    /// stippling.
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "points",
+        value_parser = clap::value_parser!(u64).range(..=MAX_EXACT)
+    )]
+    pub(crate) exact: Option<u64>,
+
     /// Chooses which of many equally good arrangements is drawn.
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) seed: u64,
@@ -98,6 +253,14 @@ pub(crate) struct StippleOptions {
     /// Of no effect on CSV.
     #[arg(long, value_name = "PIXELS", value_parser = positive)]
     pub(crate) dot_size: Option<f64>,
+
+    /// Where dots may lie: `relaxed` moves each a little so that they are evenly spread at every
+    /// density; `fixed` leaves them at the centres of tiles, where rows and clumps show, but where
+    /// more dots only ever add to fewer.
+    ///
+    /// [default: relaxed, but fixed with `--exact`, which knows no other]
+    #[arg(long, value_enum, value_name = "HOW")]
+    pub(crate) centres: Option<Centres>,
 
     /// Put dots where the photograph is light, and draw them white on black.
     #[arg(long)]
@@ -115,6 +278,48 @@ pub(crate) struct StippleOptions {
     pub(crate) scale: f64,
 
     /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Where dots may lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Centres {
+    /// Moved aside, evenly spread.
+    Relaxed,
+    /// At the centres of tiles.
+    Fixed,
+}
+
+/// Options of `twelvefold relax`.
+#[derive(Debug, Args)]
+pub(crate) struct RelaxOptions {
+    /// Where the trained table goes.
+    #[arg(short, long, value_name = "FILE", required_unless_present = "measure")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Measure this table instead of training one.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "tiny"])]
+    pub(crate) measure: Option<PathBuf>,
+
+    /// A digit assignment in the format of tables/digits.txt [default: the one inside this program].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) digits: Option<PathBuf>,
+
+    /// Chooses the places that are trained on. The same seed gives the same bytes with any number of
+    /// threads.
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    pub(crate) seed: u64,
+
+    /// Threads to train with [default: one a processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) threads: Option<u16>,
+
+    /// Train for seconds only, on a coarse grid: to try the command, not to use the table.
+    #[arg(long)]
+    pub(crate) tiny: bool,
+
+    /// Neither show progress nor measure the result.
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }

@@ -3,12 +3,17 @@
 
 mod args;
 mod drawing;
+mod envmap;
 mod failure;
 mod figures;
 mod interrupt;
+mod measure;
 mod output;
 mod picture;
+mod point_list;
 mod progress;
+mod relax;
+mod report;
 mod stipple;
 mod tables;
 mod tiling;
@@ -35,6 +40,10 @@ fn main() -> ExitCode {
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Stipple(options) => stipple::run(options),
+        Command::Envmap(options) => envmap::run(options),
+        Command::Relax(options) => relax::run(options),
+        Command::Measure(options) => measure::run(options),
+        Command::Report(options) => report::run(options),
         Command::Tables => tables::run(),
         Command::Tiling(options) => tiling::run(options),
         Command::Figures(options) => figures::run(options),

@@ -2,14 +2,17 @@
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use glam::DVec2;
-use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError};
+use twelvefold::estimate::exactly;
+use twelvefold::{
+    Amount, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Sample, Sampling,
+    SamplingError, StippleMap,
+};
 
-use crate::args::{MAX_POINTS, StippleOptions};
-use crate::drawing::{Csv, Drawing, Png, Style, Svg};
+use crate::args::{Centres, MAX_POINTS, StippleOptions};
+use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
 use crate::failure::Failure;
 use crate::output::{Output, OutputError};
 use crate::picture::{self, Tone};
@@ -27,7 +30,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let tone = Tone { linear: options.linear, invert: options.invert };
     let picture = picture::read(photo, tone).map_err(|error| of_photo(error.into()))?;
     let black = picture.total();
-    let points = match options.points {
+    let points = match options.points.or(options.exact) {
         Some(points) => points as f64,
         None => (black / AREA_PER_DOT).round().clamp(1.0, MAX_POINTS as f64),
     };
@@ -46,36 +49,52 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         linear: options.linear,
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
         description: format!(
-            "Stippled with about {points} dots by twelvefold {}, seed {}",
+            "Stippled with {}{points} dots by twelvefold {}, seed {}",
+            if options.exact.is_some() { "" } else { "about " },
             env!("CARGO_PKG_VERSION"),
             options.seed
         ),
     };
 
-    let map =
-        ImageMap::new(picture.width, picture.height, picture.importance, InvalidPixels::Reject)
-            .map_err(|error| of_photo(error.into()))?;
-    let placement = Placement::new(map.domain(), options.seed);
-    let sampling = Sampling::new(&placement, &map, Amount::Points(points))
-        .map_err(|error| of_photo(error.into()))?;
-
     let mut progress = Progress::new(points, options.quiet);
-    let drawn = match kind {
-        Kind::Csv => Csv::new(&mut output)
-            .map_err(DrawError::from)
-            .and_then(|csv| draw(&sampling, csv, &mut progress)),
-        Kind::Svg => Svg::new(&mut output, &style)
-            .map_err(DrawError::from)
-            .and_then(|svg| draw(&sampling, svg, &mut progress)),
-        Kind::Png => {
-            let png = Png::new(&mut output, &style)
-                .map_err(|error| Failure::at(&options.output, error))?;
-            draw(&sampling, png, &mut progress)
+    let (width, height, pixels) = (picture.width, picture.height, picture.importance);
+    let invalid = InvalidPixels::Reject;
+    let to = (&mut output, &style, &mut progress);
+    let drawn = match (options.exact, options.centres.unwrap_or(Centres::Relaxed)) {
+        (Some(n), _) => {
+            let map = ImageMap::new(width, height, pixels, invalid)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let dots = exactly(&placement, &map, n as usize, Limits::default())
+                .map_err(|error| of_photo(error.into()))?;
+            let mut positions = dots.iter().map(|dot| Ok(dot.position));
+            draw_as(kind, &mut positions, map.domain(), to)
+        }
+        (None, Centres::Fixed) => {
+            let map = ImageMap::new(width, height, pixels, invalid)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(points));
+            let sampling = sampling.map_err(|error| of_photo(error.into()))?;
+            draw_sampling(kind, &sampling, to)
+        }
+        (None, Centres::Relaxed) => {
+            let map = StippleMap::new(width, height, pixels, invalid, points)
+                .map_err(|error| of_photo(error.into()))?;
+            let placement = Placement::new(map.domain(), options.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(points))
+                .and_then(Sampling::relaxed)
+                .map_err(|error| of_photo(error.into()))?;
+            draw_sampling(kind, &sampling, to)
         }
     };
     let written = match drawn {
         Ok(()) => output.commit(),
         Err(DrawError::Write(error)) => Err(error.into()),
+        Err(DrawError::Picture(error)) => {
+            progress.finish();
+            return Err(Failure::at(&options.output, error));
+        }
         Err(DrawError::Sampling(error)) => {
             progress.finish();
             return Err(of_photo(error.into()));
@@ -144,22 +163,51 @@ fn default_dot_size(density: f64) -> f64 {
     if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
 }
 
-/// Puts every point of `sampling` into `drawing`.
+/// Where drawn dots go: the file, how they look, and who is told of them.
+type Target<'a> = (&'a mut Output, &'a Style, &'a mut Progress);
+
+/// Draws every point of `sampling` as a file of this kind.
+fn draw_sampling(
+    kind: Kind,
+    sampling: &Sampling<'_, impl Importance>,
+    to: Target<'_>,
+) -> Result<(), DrawError> {
+    // In 64 bits because 32 would be too few in a picture with sides of very different length.
+    let mut positions =
+        sampling.points()?.map(|point| point.map(|Sample::<DVec2> { position, .. }| position));
+    draw_as(kind, &mut positions, sampling.placement().domain(), to)
+}
+
+/// Draws dots as a file of this kind.
+fn draw_as(
+    kind: Kind,
+    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
+    domain: Domain,
+    (output, style, progress): Target<'_>,
+) -> Result<(), DrawError> {
+    match kind {
+        Kind::Csv => draw(positions, domain, Csv::new(output)?, progress),
+        Kind::Svg => draw(positions, domain, Svg::new(output, style)?, progress),
+        Kind::Png => {
+            let png = Png::new(output, style).map_err(DrawError::Picture)?;
+            draw(positions, domain, png, progress)
+        }
+    }
+}
+
+/// Puts every dot into `drawing`.
 fn draw(
-    sampling: &Sampling<'_, ImageMap>,
+    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
+    domain: Domain,
     mut drawing: impl Drawing,
     progress: &mut Progress,
 ) -> Result<(), DrawError> {
-    let end = sampling.placement().domain().max();
-    let mut written = Ok(());
-    // In 64 bits because 32 would be too few in a picture with sides of very different length.
-    sampling.visit(|point: Sample<DVec2>| {
-        let DVec2 { x, y } = point.position;
-        written = drawing.dot(narrowed(x, end.x), narrowed(y, end.y));
+    let end = domain.max();
+    for position in positions {
+        let DVec2 { x, y } = position?;
+        drawing.dot(narrowed(x, end.x), narrowed(y, end.y))?;
         progress.point();
-        if written.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    })?;
-    written?;
+    }
     Ok(drawing.finish()?)
 }
 
@@ -174,6 +222,7 @@ fn narrowed(coordinate: f64, end: f64) -> f32 {
 enum DrawError {
     Sampling(SamplingError),
     Write(io::Error),
+    Picture(PngError),
 }
 
 impl From<SamplingError> for DrawError {

@@ -9,7 +9,7 @@ mod svg;
 use std::io;
 
 pub(crate) use self::csv::Csv;
-pub(crate) use self::png::Png;
+pub(crate) use self::png::{Png, PngError};
 pub(crate) use self::svg::Svg;
 
 /// A file being filled with dots.

@@ -3,6 +3,7 @@
 mod limits;
 mod openexr;
 mod plane;
+mod radiance;
 mod raster;
 pub(crate) mod srgb;
 mod tiff;
@@ -15,6 +16,7 @@ use std::io::{self, BufReader, Read as _, Seek as _};
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
+pub(crate) use radiance::{Radiance, read_radiance};
 pub(crate) use tone::Tone;
 
 /// How many dots each pixel of a photograph deserves.
@@ -91,6 +93,8 @@ pub(crate) enum PictureError {
     TooLong { bytes: u64 },
     /// The header asks for more memory than the limit; `bytes` is `None` past 64 bits.
     TooLarge { width: usize, height: usize, bytes: Option<u64> },
+    /// A format that stores tones for a display, where light is needed.
+    NotRadiance(Format),
     /// The header says that there are no pixels.
     Empty,
     /// The file ends early.
@@ -124,6 +128,10 @@ impl fmt::Display for PictureError {
                 }
                 write!(out, " of memory, more than the limit of {} MiB", limits::MEMORY_LIMIT >> 20)
             }
+            Self::NotRadiance(format) => write!(
+                out,
+                "is a {format} file, which holds no radiance; Radiance HDR and OpenEXR files do"
+            ),
             Self::Empty => out.write_str("has no pixels"),
             Self::Truncated(format) => write!(out, "is a {format} file that ends early"),
             Self::Decode(format, reason) => write!(out, "cannot be read as {format}: {reason}"),
@@ -158,6 +166,18 @@ impl From<io::Error> for PictureError {
 /// # Errors
 /// [`PictureError`].
 pub(crate) fn read(path: &Path, tone: Tone) -> Result<Picture, PictureError> {
+    let (format, file) = open(path)?;
+    caught(format, || match format {
+        Format::Png => raster::png(file, tone),
+        Format::Jpeg => raster::jpeg(file, tone),
+        Format::Hdr => raster::hdr(file, tone),
+        Format::Tiff => tiff::read(file, tone),
+        Format::OpenExr => openexr::read(file, tone),
+    })
+}
+
+/// Opens the file at `path` and tells its format; the reader stands at its start.
+fn open(path: &Path) -> Result<(Format, BufReader<File>), PictureError> {
     // Opening a pipe would wait for somebody to write to it.
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() {
@@ -172,23 +192,17 @@ pub(crate) fn read(path: &Path, tone: Tone) -> Result<Picture, PictureError> {
     file.by_ref().take(16).read_to_end(&mut start)?;
     file.rewind()?;
     let format = Format::of(&start).ok_or(PictureError::UnknownFormat)?;
-    caught(format, || match format {
-        Format::Png => raster::png(file, tone),
-        Format::Jpeg => raster::jpeg(file, tone),
-        Format::Hdr => raster::hdr(file, tone),
-        Format::Tiff => tiff::read(file, tone),
-        Format::OpenExr => openexr::read(file, tone),
-    })
+    Ok((format, file))
 }
 
 /// Runs a decoder; if it panics on a malformed file, that is an error like any other.
 ///
 /// The decoders are other people's code, and some of them have paths that index past the end when a
 /// header lies.
-fn caught(
+fn caught<T>(
     format: Format,
-    decode: impl FnOnce() -> Result<Picture, PictureError>,
-) -> Result<Picture, PictureError> {
+    decode: impl FnOnce() -> Result<T, PictureError>,
+) -> Result<T, PictureError> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     let result = panic::catch_unwind(AssertUnwindSafe(decode));

@@ -14,25 +14,108 @@ use image::metadata::Orientation;
 
 use super::plane::Plane;
 use super::tone::{Alpha, Colors, Tone, Toner};
-use super::{Format, Picture, PictureError, limits};
+use super::{Format, Picture, PictureError, Radiance, limits};
 
 /// Red, green, blue and alpha, or luminance and alpha, as far as a layer has them.
 type Pixel = [f32; 4];
 
+/// What the pixels of a file go into.
+trait Canvas {
+    /// Told once, before the first pixel: the size of the display window.
+    fn begin(
+        &mut self,
+        size: (usize, usize),
+        colors: Colors,
+        alpha: Alpha,
+    ) -> Result<(), PictureError>;
+    /// A pixel inside the display window.
+    fn put(&mut self, x: usize, y: usize, pixel: &Pixel);
+}
+
+/// A photograph's importance being filled.
+struct Photograph {
+    tone: Tone,
+    filling: Option<(Toner, Plane)>,
+}
+
+impl Canvas for Photograph {
+    fn begin(
+        &mut self,
+        size: (usize, usize),
+        colors: Colors,
+        alpha: Alpha,
+    ) -> Result<(), PictureError> {
+        let toner = Toner::new::<f32>(self.tone, colors, alpha);
+        let background = toner.importance(&Pixel::default()).unwrap_or(0.0);
+        let plane = Plane::new(size, Orientation::NoTransforms, background)?;
+        self.filling = Some((toner, plane));
+        Ok(())
+    }
+
+    fn put(&mut self, x: usize, y: usize, pixel: &Pixel) {
+        if let Some((toner, plane)) = &mut self.filling {
+            plane.set(x, y, toner.importance(pixel));
+        }
+    }
+}
+
+/// Radiance being filled, as stored.
+#[derive(Default)]
+struct Light {
+    colors: Option<Colors>,
+    radiance: Radiance,
+}
+
+impl Canvas for Light {
+    fn begin(
+        &mut self,
+        (width, height): (usize, usize),
+        colors: Colors,
+        _: Alpha,
+    ) -> Result<(), PictureError> {
+        self.colors = Some(colors);
+        self.radiance = Radiance::black(width, height)?;
+        Ok(())
+    }
+
+    fn put(&mut self, x: usize, y: usize, [red, green, blue, _]: &Pixel) {
+        let color = match self.colors {
+            Some(Colors::Gray) => [*red; 3],
+            _ => [*red, *green, *blue],
+        };
+        self.radiance.pixels[y * self.radiance.width + x] = color;
+    }
+}
+
 /// Reads an OpenEXR file. The picture is the display window; where the layer does not reach it is
 /// transparent if the layer has alpha, and black if not.
 pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
+    let mut photograph = Photograph { tone, filling: None };
+    read_into(file, &mut photograph)?;
+    match photograph.filling {
+        Some((_, plane)) => plane.finish(),
+        None => Err(PictureError::Empty),
+    }
+}
+
+/// Reads the radiance in an OpenEXR file over its display window, alpha aside; black where the layer
+/// does not reach.
+pub(super) fn read_radiance(file: BufReader<File>) -> Result<Radiance, PictureError> {
+    let mut light = Light::default();
+    read_into(file, &mut light)?;
+    Ok(light.radiance)
+}
+
+fn read_into(file: BufReader<File>, canvas: &mut impl Canvas) -> Result<(), PictureError> {
     let file = block::read(file, false).map_err(failure)?;
     let (index, header, colors) = layer(file.headers())?;
     let alpha = if has(header, "A") { Alpha::Associated } else { Alpha::None };
-    let toner = Toner::new::<f32>(tone, colors, alpha);
 
     let window = header.shared_attributes.display_window;
     // A block may be as large as the layer, which may be larger than the picture.
     limits::check(header.layer_size.0, header.layer_size.1, header.channels.bytes_per_pixel)?;
-    let background = toner.importance(&Pixel::default()).unwrap_or(0.0);
     let size = (window.size.0, window.size.1);
-    let mut plane = Plane::new(size, Orientation::NoTransforms, background)?;
+    canvas.begin(size, colors, alpha)?;
 
     // Blocks are placed from the layer's corner. Both corners are 32-bit, so their difference fits.
     let corner = header.own_attributes.layer_position;
@@ -67,14 +150,14 @@ pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, Picture
                 let Some(y) = inside(line.location.position.1, shift_y, size.1) else { continue };
                 for (offset, pixel) in row.iter().enumerate() {
                     if let Some(x) = inside(line.location.position.0 + offset, shift_x, size.0) {
-                        plane.set(x, y, toner.importance(pixel));
+                        canvas.put(x, y, pixel);
                     }
                 }
             }
             Ok(())
         })
         .map_err(failure)?;
-    plane.finish()
+    Ok(())
 }
 
 /// Copies one channel of one row of pixels into place.

@@ -6,11 +6,11 @@ use std::io::{BufReader, Cursor, Read as _, Seek as _};
 use image::codecs::hdr::HdrDecoder;
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::PngDecoder;
-use image::{ColorType, ImageDecoder, ImageError, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageError, Limits};
 
 use super::plane::Plane;
 use super::tone::{Alpha, Colors, Sample, Tone, Toner};
-use super::{Format, Picture, PictureError, limits};
+use super::{Format, Picture, PictureError, Radiance, limits};
 
 /// Reads a PNG file: 1 to 16 bits, gray, colour or palette, with or without alpha.
 pub(super) fn png(mut file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
@@ -39,6 +39,20 @@ pub(super) fn jpeg(mut file: BufReader<File>, tone: Tone) -> Result<Picture, Pic
 pub(super) fn hdr(file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
     // Strict mode refuses the common signature `#?RGBE`; which of them it is has been checked.
     decode(Format::Hdr, HdrDecoder::new_nonstrict(file), tone)
+}
+
+/// Reads the radiance in a Radiance HDR file.
+pub(super) fn hdr_radiance(file: BufReader<File>) -> Result<Radiance, PictureError> {
+    let failed = |error: ImageError| failure(Format::Hdr, error);
+    let mut decoder = HdrDecoder::new_nonstrict(file).map_err(failed)?;
+    let (width, height) = decoder.dimensions();
+    let mut radiance = Radiance::black(width as usize, height as usize)?;
+    decoder.set_limits(decoder_limits()).map_err(failed)?;
+    let image = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgb32f();
+    for (pixel, stored) in radiance.pixels.iter_mut().zip(image.pixels()) {
+        *pixel = stored.0;
+    }
+    Ok(radiance)
 }
 
 fn decoder_limits() -> Limits {

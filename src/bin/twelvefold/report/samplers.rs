@@ -1,0 +1,268 @@
+//! The samplers compared: ours in its variants, and what else is in use.
+
+use glam::DVec2;
+use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise};
+use twelvefold::{Amount, Constant, Domain, ImageMap, Importance, Limits, Placement, Sampling};
+
+use super::classic::{Alias, InverseCdf, Random, halton, plastic, sobol};
+
+/// A set of points, each with the area that it stands for.
+pub(crate) type Set = Vec<(DVec2, f64)>;
+
+/// What is sampled, prepared once for all samplers.
+pub(crate) struct Target<'m> {
+    map: &'m ImageMap,
+    warp: Warp<'m>,
+    inverse: InverseCdf,
+    alias: Alias,
+    integral: f64,
+    greatest: f64,
+}
+
+impl<'m> Target<'m> {
+    /// `None` for a map that is 0 everywhere.
+    pub(crate) fn new(map: &'m ImageMap) -> Option<Self> {
+        Some(Self {
+            map,
+            warp: Warp::new(map)?,
+            inverse: InverseCdf::new(map),
+            alias: Alias::new(map.pixels()),
+            integral: map.mean() * map.domain().area(),
+            greatest: map.pixels().iter().copied().fold(0.0, f32::max).into(),
+        })
+    }
+
+    /// A position with its weight, as one of n that follow the map.
+    fn weighted(&self, position: DVec2, n: usize) -> (DVec2, f64) {
+        let value = self.map.value(position);
+        (position, self.integral / (n as f64 * value))
+    }
+}
+
+/// A way to make a set of about n points of the unit square, from a seed.
+pub(crate) struct Uniform {
+    pub(crate) name: &'static str,
+    pub(crate) make: fn(n: usize, seed: u64) -> Option<Set>,
+}
+
+/// A way to make a set of about n points that follow a map, from a seed.
+pub(crate) struct Following {
+    pub(crate) name: &'static str,
+    pub(crate) make: fn(target: &Target<'_>, n: usize, seed: u64) -> Option<Set>,
+}
+
+fn set(points: Vec<Weighted>) -> Set {
+    points.into_iter().map(|point| (point.position, point.weight)).collect()
+}
+
+/// The thresholded points of an importance. `None` if there are none to be had.
+fn thresholded<I: Importance>(
+    domain: Domain,
+    importance: &I,
+    n: usize,
+    seed: u64,
+    weighting: Weighting,
+) -> Option<Vec<Weighted>> {
+    let placement = Placement::new(domain, seed);
+    let sampling = Sampling::new(&placement, importance, Amount::Points(n as f64)).ok()?;
+    sampling.weighted(weighting).ok()?.collect::<Result<_, _>>().ok()
+}
+
+/// Equal weights for points of the unit square.
+fn equal(points: impl ExactSizeIterator<Item = DVec2>) -> Set {
+    let weight = 1.0 / points.len() as f64;
+    points.map(|point| (point, weight)).collect()
+}
+
+/// The fractional part of p + shift, the shift drawn from the seed.
+fn shifted(points: impl ExactSizeIterator<Item = DVec2>, seed: u64) -> Set {
+    let mut random = Random::new(seed);
+    let shift = random.point();
+    // Below 1 after rounding, too.
+    let wrap = |p: DVec2| (p + shift).fract().min(DVec2::splat(1.0f64.next_down()));
+    equal(points.map(wrap))
+}
+
+/// The samplers of constant importance.
+pub(crate) const UNIFORM: [Uniform; 11] = [
+    Uniform {
+        name: "ours, 1/density",
+        make: |n, seed| {
+            thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density).map(set)
+        },
+    },
+    Uniform {
+        name: "ours, smoothed",
+        make: |n, seed| {
+            thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Smoothed).map(set)
+        },
+    },
+    Uniform {
+        name: "ours, exactly n",
+        make: |n, seed| {
+            let placement = Placement::new(Domain::unit(), seed);
+            exactly(&placement, &Constant::ONE, n, Limits::default()).ok().map(set)
+        },
+    },
+    Uniform {
+        name: "ours, complete level",
+        make: |n, seed| {
+            let placement = Placement::aligned(Domain::unit(), seed, n as f64).ok()?;
+            let sampling =
+                Sampling::new(&placement, &Constant::ONE, Amount::Density(n as f64)).ok()?;
+            let mut buffer = vec![DVec2::ZERO; n + 64 + n / 8];
+            let filled = sampling.fill(&mut buffer).ok()?;
+            let weight = 1.0 / n as f64;
+            Some(buffer[..filled.written].iter().map(|p| (*p, weight)).collect())
+        },
+    },
+    Uniform { name: "Halton, shifted", make: |n, seed| Some(shifted((0..n).map(halton), seed)) },
+    Uniform {
+        name: "Hammersley, shifted",
+        make: |n, seed| {
+            Some(shifted((0..n).map(|i| DVec2::new(i as f64 / n as f64, halton(i).x)), seed))
+        },
+    },
+    Uniform { name: "Owen Sobol", make: |n, seed| Some(equal((0..n).map(|i| sobol(i, seed)))) },
+    Uniform { name: "R2, shifted", make: |n, seed| Some(shifted((0..n).map(plastic), seed)) },
+    Uniform {
+        name: "jittered",
+        make: |n, seed| {
+            let side = (n as f64).sqrt() as usize;
+            let mut random = Random::new(seed);
+            let cell = |i| DVec2::new((i % side) as f64, (i / side) as f64);
+            Some(equal((0..side * side).map(|i| (cell(i) + random.point()) / side as f64)))
+        },
+    },
+    Uniform {
+        name: "Poisson disk",
+        make: |n, seed| {
+            if n > 16_384 {
+                return None;
+            }
+            // Bridson's sets hold about 0.7 / r² points.
+            let radius = (0.7 / n as f64).sqrt();
+            let disk = fast_poisson::Poisson2D::new();
+            let disk = disk.with_dimensions([1.0, 1.0], radius).with_seed(seed);
+            let points = disk.generate();
+            Some(equal(points.into_iter().map(DVec2::from_array)))
+        },
+    },
+    Uniform {
+        name: "white noise",
+        make: |n, seed| {
+            let mut random = Random::new(seed);
+            Some(equal((0..n).map(move |_| random.point())))
+        },
+    },
+];
+
+/// The samplers of a map.
+pub(crate) const FOLLOWING: [Following; 12] = [
+    Following {
+        name: "ours, 1/density",
+        make: |target, n, seed| {
+            let map = target.map;
+            thresholded(map.domain(), map, n, seed, Weighting::Density).map(set)
+        },
+    },
+    Following {
+        name: "ours, normalised",
+        make: |target, n, seed| {
+            let map = target.map;
+            let mut points = thresholded(map.domain(), map, n, seed, Weighting::Density)?;
+            normalise(&mut points, n as f64);
+            Some(set(points))
+        },
+    },
+    Following {
+        name: "ours, smoothed",
+        make: |target, n, seed| {
+            let map = target.map;
+            thresholded(map.domain(), map, n, seed, Weighting::Smoothed).map(set)
+        },
+    },
+    Following {
+        name: "ours, post-stratified",
+        make: |target, n, seed| {
+            let map = target.map;
+            let mut points = thresholded(map.domain(), map, n, seed, Weighting::Density)?;
+            target.warp.post_stratify(&mut points, 6.0);
+            Some(set(points))
+        },
+    },
+    Following {
+        name: "ours, exactly n",
+        make: |target, n, seed| {
+            let placement = Placement::new(target.map.domain(), seed);
+            exactly(&placement, target.map, n, Limits::default()).ok().map(set)
+        },
+    },
+    Following {
+        name: "ours, warped level",
+        make: |target, n, seed| target.warp.level(n, seed, Limits::default()).ok().map(set),
+    },
+    Following {
+        name: "Owen Sobol + warp",
+        make: |target, n, seed| {
+            let warped = |i| target.weighted(target.warp.position(sobol(i, seed)), n);
+            Some((0..n).map(warped).collect())
+        },
+    },
+    Following {
+        name: "Owen Sobol + inverse CDF",
+        make: |target, n, seed| {
+            let warped = |i| target.weighted(target.inverse.position(sobol(i, seed)), n);
+            Some((0..n).map(warped).collect())
+        },
+    },
+    Following {
+        name: "Halton + inverse CDF",
+        make: |target, n, seed| {
+            let points = shifted((0..n).map(halton), seed);
+            let warped = |(p, _): (DVec2, f64)| target.weighted(target.inverse.position(p), n);
+            Some(points.into_iter().map(warped).collect())
+        },
+    },
+    Following {
+        name: "Hammersley + inverse CDF",
+        make: |target, n, seed| {
+            let flat = |i| DVec2::new(i as f64 / n as f64, halton(i).x);
+            let points = shifted((0..n).map(flat), seed);
+            let warped = |(p, _): (DVec2, f64)| target.weighted(target.inverse.position(p), n);
+            Some(points.into_iter().map(warped).collect())
+        },
+    },
+    Following {
+        name: "alias + jitter (white)",
+        make: |target, n, seed| {
+            let mut random = Random::new(seed);
+            let (width, _) = target.map.size();
+            let draw = |_| {
+                let pixel = target.alias.draw(&mut random);
+                let corner = DVec2::new((pixel % width) as f64, (pixel / width) as f64);
+                target.weighted(corner + random.point(), n)
+            };
+            Some((0..n).map(draw).collect())
+        },
+    },
+    Following {
+        name: "rejection (white)",
+        make: |target, n, seed| {
+            let domain = target.map.domain();
+            let tries = n as f64 * target.greatest * domain.area() / target.integral;
+            if tries > 1e7 {
+                return None;
+            }
+            let mut random = Random::new(seed);
+            let mut set = Vec::with_capacity(n);
+            while set.len() < n {
+                let position = random.point() * domain.size();
+                if random.unit() * target.greatest < target.map.value(position) {
+                    set.push(target.weighted(position, n));
+                }
+            }
+            Some(set)
+        },
+    },
+];

@@ -1,0 +1,118 @@
+//! Warps: a uniform set bent into the density of a map.
+
+use alloc::vec::Vec;
+
+use glam::DVec2;
+
+use super::exact::{ExactError, exactly};
+use super::weighted::Weighted;
+use crate::domain::Domain;
+use crate::importance::sums::SumPyramid;
+use crate::importance::{Constant, ImageMap};
+use crate::placement::Placement;
+use crate::sampling::Limits;
+
+/// The hierarchical warp from the unit square to a map's domain that turns the uniform density into
+/// the map's (P. Clarberg et al., *Wavelet Importance Sampling*, 2005).
+///
+/// From the whole map down to a pixel, the square is divided into upper and lower half in the ratio of
+/// their sums, then left and right, and each part is stretched to a half square. Neighbours stay
+/// neighbours but for the stretching, so that a set of low discrepancy keeps most of its merit: the
+/// least error per sample known for environment maps, with a complete level of the tiling as well as
+/// with Owen-scrambled Sobol points. Pixels of importance 0 get no point.
+///
+/// O(pixels) to make; 3 to 4 numbers read a level and point.
+#[derive(Clone, Debug)]
+pub struct Warp<'m> {
+    map: &'m ImageMap,
+    sums: SumPyramid,
+}
+
+/// The greatest number below 1.
+const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+
+impl<'m> Warp<'m> {
+    /// The warp to a map's density; `None` if the map is 0 everywhere.
+    #[must_use]
+    pub fn new(map: &'m ImageMap) -> Option<Self> {
+        let sums = SumPyramid::new(map);
+        let sum = sums.sum(sums.top());
+        (sum > 0.0 && sum.is_finite()).then_some(Self { map, sums })
+    }
+
+    /// Where a point of [0, 1)² goes: to a point of the domain inside a pixel above 0. Coordinates
+    /// outside of [0, 1), NaN included, count as the nearest inside.
+    #[must_use]
+    pub fn position(&self, at: DVec2) -> DVec2 {
+        let (column, row, at) = self.pixel(at);
+        let domain = self.map.domain();
+        let (width, height) = self.map.size();
+        let size = domain.size() / DVec2::new(width as f64, height as f64);
+        let position = domain.min() + size * (DVec2::new(column as f64, row as f64) + at);
+        // Rounding may carry a point to the next pixel, which may be 0, or out of the domain.
+        if self.map.texel(position) == (column, row) && domain.contains(position) {
+            position
+        } else {
+            domain.min() + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
+        }
+    }
+
+    /// The pixel to which a point goes, and where in it.
+    fn pixel(&self, at: DVec2) -> (usize, usize, DVec2) {
+        let inside = |c: f64| if c > 0.0 { c.min(BELOW_ONE) } else { 0.0 };
+        let mut at = DVec2::new(inside(at.x), inside(at.y));
+        let mut cell = self.sums.top();
+        while cell.level > 0 {
+            let quarters = cell.quarters();
+            let [a, b, c, d] = quarters.map(|quarter| self.sums.sum(quarter));
+            // A part without importance has exactly the fraction 0 or 1, which no coordinate picks.
+            let upper = (a + b) / ((a + b) + (c + d));
+            let (row, y) = split(at.y, upper);
+            let [left, right] = if row == 0 { [a, b] } else { [c, d] };
+            let (column, x) = split(at.x, left / (left + right));
+            at = DVec2::new(x, y);
+            cell = quarters[2 * row + column];
+        }
+        (cell.x, cell.y, at)
+    }
+
+    /// The weighted point to which a point of [0, 1)² goes, as one of `n`. The estimate from n points
+    /// that are each uniform in the square is unbiased.
+    #[must_use]
+    pub fn weighted(&self, at: DVec2, n: usize, rank: u64) -> Weighted {
+        let position = self.position(at);
+        let (x, y) = self.map.texel(position);
+        let value = f64::from(self.map.pixels()[y * self.map.size().0 + x]);
+        let integral = self.map.mean() * self.map.domain().area();
+        let density = n as f64 * (value / integral);
+        Weighted { position, rank, density, weight: 1.0 / density }
+    }
+
+    /// [`post_stratify`](super::post_stratify) without summing the pixels again: O(points·log points).
+    pub fn post_stratify(&self, points: &mut [Weighted], per_cell: f64) {
+        super::stratified::weigh(points, self.map, &self.sums, per_cell);
+    }
+
+    /// Exactly `n` points that follow the map: a complete level of the tiling, warped. Ordered by rank;
+    /// ranks are those of the uniform set.
+    ///
+    /// # Errors
+    /// Those of [`exactly`], with `limits`.
+    pub fn level(&self, n: usize, seed: u64, limits: Limits) -> Result<Vec<Weighted>, ExactError> {
+        if n == 0 {
+            return Ok(Vec::new());
+        }
+        let placement = Placement::aligned(Domain::unit(), seed, n as f64)?;
+        let uniform = exactly(&placement, &Constant::ONE, n, limits)?;
+        Ok(uniform.iter().map(|point| self.weighted(point.position, n, point.rank)).collect())
+    }
+}
+
+/// Which part of [0, `fraction`) ∪ [`fraction`, 1) holds c, and where in it, in [0, 1).
+fn split(c: f64, fraction: f64) -> (usize, f64) {
+    if c < fraction {
+        (0, (c / fraction).min(BELOW_ONE))
+    } else {
+        (1, ((c - fraction) / (1.0 - fraction)).min(BELOW_ONE))
+    }
+}

@@ -1,0 +1,143 @@
+//! Importance from pixels, interpolated between their centres.
+
+use glam::DVec2;
+
+use super::{ImageMap, Importance};
+use crate::domain::{Domain, Region};
+
+/// An [`ImageMap`] read bilinearly: each pixel's value holds at its centre, and between four centres the
+/// importance is interpolated. Beyond the outermost centres the border pixels continue.
+///
+/// Smooth where the piecewise-constant map has steps, at about twice the cost of a value; a sharp
+/// detail is spread over two pixels. The integral over the map's domain is the same, Σ pixels.
+#[derive(Clone, Debug)]
+pub struct BilinearMap {
+    map: ImageMap,
+}
+
+impl BilinearMap {
+    /// The map's pixels, interpolated over the map's domain.
+    #[must_use]
+    pub const fn new(map: ImageMap) -> Self {
+        Self { map }
+    }
+
+    /// The pixels.
+    #[must_use]
+    pub const fn map(&self) -> &ImageMap {
+        &self.map
+    }
+
+    /// Half a pixel, in units.
+    fn half_texel(&self) -> DVec2 {
+        let (width, height) = self.map.size();
+        0.5 * self.map.domain().size() / DVec2::new(width as f64, height as f64)
+    }
+}
+
+/// The pixel before a coordinate (in pixels, centres at integers), the one after, and the part of
+/// the way between them, in 0..=1.
+fn between(coordinate: f64, count: usize) -> (usize, usize, f64) {
+    let last = count - 1;
+    // `as` takes negative numbers to 0; so does the clamp of the fraction.
+    let before = (coordinate as usize).min(last);
+    let fraction = (coordinate - before as f64).clamp(0.0, 1.0);
+    (before, (before + 1).min(last), fraction)
+}
+
+impl Importance for BilinearMap {
+    fn value(&self, at: DVec2) -> f64 {
+        let (width, height) = self.map.size();
+        let centred = (at - self.map.domain().min()) / (2.0 * self.half_texel()) - 0.5;
+        let (x0, x1, s) = between(centred.x, width);
+        let (y0, y1, t) = between(centred.y, height);
+        let pixel = |x, y| f64::from(self.map.pixels()[y * width + x]);
+        let [a, b, c, d] = [pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1)];
+        let above = a + s * (b - a);
+        let below = c + s * (d - c);
+        // Rounding may carry the sum an ulp past the pixels it lies between.
+        (above + t * (below - above)).clamp(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+
+    /// The largest pixel whose centre is less than a pixel from the region: interpolation never
+    /// exceeds the pixels it lies between.
+    fn upper_bound(&self, region: &Region) -> f64 {
+        // A little more than half a pixel, for the rounding of `value`'s own coordinates.
+        let reach = self.half_texel().max_element() * (1.0 + 1e-9);
+        self.map.upper_bound(&Region { radius: region.radius + reach, ..*region })
+    }
+
+    /// Known over the map's own domain only: there each pixel's share is one pixel's area.
+    fn integral(&self, domain: &Domain) -> Option<f64> {
+        (*domain == self.map.domain()).then(|| self.map.mean() * domain.area())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InvalidPixels;
+    use crate::seed::SplitMix64;
+    use alloc::vec::Vec;
+    use proptest::prelude::*;
+
+    fn random(width: usize, height: usize, seed: u64) -> BilinearMap {
+        let mut random = SplitMix64::new(seed);
+        let pixels: Vec<f32> =
+            (0..width * height)
+                .map(|_| {
+                    if random.next_u64().is_multiple_of(3) {
+                        0.0
+                    } else {
+                        9.0 * random.unit() as f32
+                    }
+                })
+                .collect();
+        BilinearMap::new(ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap())
+    }
+
+    proptest! {
+        #[test]
+        fn the_bound_holds_over_every_disc(
+            seed: u64,
+            (width, height) in (1usize..12, 1usize..12),
+            (x, y, radius) in (-0.2..1.2f64, -0.2..1.2f64, 0.0..0.6f64),
+        ) {
+            let domain =
+                Domain::new(DVec2::new(-3.0, 1e4), DVec2::new(5.0, 0.7)).unwrap();
+            let map = BilinearMap::new(random(width, height, seed).map.over(domain));
+            let region = Region { centre: domain.min() + domain.size() * DVec2::new(x, y), radius };
+            let bound = map.upper_bound(&region);
+            let mut random = SplitMix64::new(seed);
+            for _ in 0..200 {
+                let at = region.centre + radius * DVec2::from_array(random.in_disc(0));
+                prop_assert!(map.value(at) <= bound);
+            }
+        }
+    }
+
+    #[test]
+    fn pixels_hold_at_their_centres_and_means_between() {
+        let map = random(4, 3, 2);
+        let pixel = |x: usize, y: usize| f64::from(map.map.pixels()[y * 4 + x]);
+        assert_eq!(map.value(DVec2::new(2.5, 1.5)), pixel(2, 1));
+        assert_eq!(map.value(DVec2::new(-9.0, 0.2)), pixel(0, 0));
+        assert_eq!(map.value(DVec2::new(4.0, 3.0)), pixel(3, 2));
+        let middle = map.value(DVec2::new(2.0, 2.5));
+        assert!((middle - 0.5 * (pixel(1, 2) + pixel(2, 2))).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_integral_is_that_of_the_values() {
+        let map = random(5, 4, 3);
+        // The midpoint rule is exact on each quarter pixel: the function is bilinear there.
+        let (mut sum, n) = (0.0, 2usize);
+        for j in 0..4 * n {
+            for i in 0..5 * n {
+                sum += map.value((DVec2::new(i as f64, j as f64) + 0.5) / n as f64);
+            }
+        }
+        let integral = map.integral(&map.map.domain()).unwrap();
+        assert!((sum / (n * n) as f64 - integral).abs() < 1e-12 * integral);
+    }
+}
