@@ -452,10 +452,14 @@ impl RankScale {
     #[inline]
     pub(crate) fn limit(self, value: f64) -> u64 {
         let limit = self.limit_before_rounding(value);
-        // Truncation takes NaN and negative numbers to 0 and saturates above.
-        let whole = limit as i64;
-        // The conversion back is exact, or both are past 2⁵³ and integers.
-        (whole.max(0) as u64) + u64::from(whole as f64 >= 0.0 && (whole as f64) < limit)
+        // Conversion to a signed integer is the cheaper one.
+        if limit < 4.0e18 {
+            let whole = limit as i64;
+            // Negative numbers admit nothing.
+            return whole.max(0) as u64 + u64::from(whole >= 0 && (whole as f64) < limit);
+        }
+        // Truncation takes NaN to 0 and saturates above; so large a number is an integer.
+        limit as u64
     }
 
     /// T − u: an integer k below 2⁵³ is under `limit(value)` exactly when k < this.
