@@ -448,14 +448,18 @@ impl RankScale {
     }
 
     /// How many ranks are accepted where the importance is `value`: the number of k ≥ 0 with
-    /// k < T − u, T − u as rounded to `f64`. 0 for NaN; about 2⁶³, past all ranks, for what is more.
+    /// k < T − u, T − u as rounded to `f64`. 0 for NaN.
     #[inline]
     pub(crate) fn limit(self, value: f64) -> u64 {
         let limit = self.limit_before_rounding(value);
-        // Truncation takes NaN to 0 and saturates at both ends.
-        let whole = limit as i64;
-        // The conversion back is exact, or both are past 2⁵³ and integers.
-        (whole.max(0) as u64) + u64::from(whole as f64 >= 0.0 && (whole as f64) < limit)
+        // Conversion to a signed integer is the cheaper one.
+        if limit < 4.0e18 {
+            let whole = limit as i64;
+            // Negative numbers admit nothing.
+            return whole.max(0) as u64 + u64::from(whole >= 0 && (whole as f64) < limit);
+        }
+        // Truncation takes NaN to 0 and saturates above; so large a number is an integer.
+        limit as u64
     }
 
     /// T − u: an integer k below 2⁵³ is under `limit(value)` exactly when k < this.
@@ -513,11 +517,7 @@ mod tests {
     fn check(scale: RankScale, value: f64) {
         let exact = integers_below(value * scale.magnification - scale.shift);
         let limit = scale.limit(value);
-        if exact < 1 << 63 {
-            assert_eq!(limit, exact, "{scale:?} {value}");
-        } else {
-            assert!(limit >= (1 << 63) - 1, "{scale:?} {value}");
-        }
+        assert_eq!(limit, exact, "{scale:?} {value}");
         for rank in
             [0, 1, limit.saturating_sub(2), limit.saturating_sub(1), limit, limit.saturating_add(1)]
         {
@@ -556,7 +556,7 @@ mod tests {
             assert!(!scale.accepts(0, value), "{value}");
         }
         for value in [f64::INFINITY, f64::MAX, 1e300] {
-            assert!(scale.limit(value) >= (1 << 63) - 1, "{value}");
+            assert_eq!(scale.limit(value), u64::MAX, "{value}");
             assert!(scale.accepts(1 << 62, value), "{value}");
         }
     }

@@ -34,7 +34,8 @@ pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>>
             .y_label_formatter(&|t| format!("{t:.0e}"))
             .draw()?;
         for (i, row) in table.rows.iter().enumerate() {
-            let ours = row.name.starts_with("twelvefold");
+            // The default depth stands out.
+            let ours = matches!(row.name.as_str(), "twelvefold" | "twelvefold, baked depth 3");
             let colour = if ours { RED.mix(1.0) } else { Palette99::pick(i + 1).mix(1.0) };
             let style = colour.stroke_width(if ours { 3 } else { 1 });
             chart
@@ -44,7 +45,7 @@ pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>>
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
+            .position(SeriesLabelPosition::LowerRight)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.2))
             .draw()?;

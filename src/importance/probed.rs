@@ -10,9 +10,10 @@ use crate::walk::scalar::Scalar;
 /// region, its centre and six around it.
 ///
 /// For functions without a known bound. A peak between the probes is missed: the points on it that
-/// rank after what the probes promised are lost, without an error. Measured on a 1024 × 1024 map at
-/// 64k points (`cargo bench --bench image`, "probed"): what is lost grows with the contrast between
-/// neighbouring probes. Use a true bound wherever there is one.
+/// rank after what the probes promised are lost, without an error. Measured on maps of 1024 × 1024
+/// pixels at 65,536 points (`cargo bench --bench image -- probed`), with headroom 1 and 2: smooth
+/// 0.05 % and none missed, noise 2.6 % and 0.02 %, hard edges 0.7 % and 0.6 %, a sun of ten pixels 23 %
+/// of all points either way. Use a true bound wherever there is one.
 #[derive(Clone, Copy, Debug)]
 pub struct Probed<I> {
     importance: I,
