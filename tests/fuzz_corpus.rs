@@ -122,7 +122,7 @@ fn fuzz(target: &str, seeds: Vec<Vec<u8>>, rounds: usize, body: fn(&[u8])) {
 #[test]
 fn tables() {
     let rules = twelvefold::Tables::built_in().rules();
-    let table = twelvefold::bake::bake(&rules, 1).unwrap();
+    let table = twelvefold::bake::bake(&rules, 1, None).unwrap();
     let digits = include_bytes!("../tables/digits.txt").to_vec();
     fuzz("tables", vec![table, digits, Vec::new()], 20_000, |data| {
         bodies::tables(data);

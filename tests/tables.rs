@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
+use twelvefold::bake::relaxation::Relaxation;
 use twelvefold::bake::{self, BakeError};
 use twelvefold::tiling::{Digits, DigitsError, Rules, TileType};
 use twelvefold::{Tables, TablesError};
@@ -10,18 +11,25 @@ fn rules() -> Rules {
     Tables::built_in().rules()
 }
 
+fn relaxation() -> Relaxation {
+    Relaxation::from_bytes(include_bytes!("../tables/relaxed.bin")).unwrap()
+}
+
 #[test]
 fn the_built_in_tables_are_the_baked_rules() {
     let built_in = Tables::built_in();
     let digits = Digits::parse(include_str!("../tables/digits.txt")).unwrap();
     assert_eq!(built_in.rules(), Rules::new(&digits).unwrap());
-    assert_eq!(built_in.as_bytes(), bake::bake(&rules(), built_in.depth(), None).unwrap());
+    let relaxation = relaxation();
+    let baked = bake::bake(&rules(), built_in.depth(), Some(&relaxation)).unwrap();
+    assert_eq!(built_in.as_bytes(), baked);
+    assert_eq!(built_in.relaxation().unwrap().provenance(), relaxation.provenance);
     assert!(Tables::from_bytes(built_in.as_bytes()).is_ok());
 }
 
 #[test]
 fn the_default_depth_has_the_recorded_hash() {
-    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, None).unwrap();
+    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, Some(&relaxation())).unwrap();
     let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     let recorded = include_str!("../tables/baked.sha256");
     assert_eq!(recorded.split_whitespace().next(), Some(hash.as_str()));
@@ -91,6 +99,29 @@ fn every_truncation_and_any_trailing_byte_is_an_error() {
     longer.push(0);
     longer.extend(crc32fast::hash(&longer).to_le_bytes());
     assert_eq!(Tables::from_bytes(&longer).unwrap_err(), TablesError::Malformed);
+}
+
+#[test]
+fn damaged_relaxed_offsets_are_an_error_even_under_a_matching_checksum() {
+    let bytes = bake::bake(&rules(), 1, Some(&relaxation())).unwrap();
+    assert!(Tables::from_bytes(&bytes).unwrap().relaxation().is_some());
+    let length = bytes.len() - 4;
+    // The records of the slots and the lengths around them lie in the last part; vectors may hold
+    // anything, but the bound on their length is checked against them.
+    for i in (0..length).step_by(97) {
+        let mut damaged = bytes.clone();
+        damaged[i] ^= 0x55;
+        assert!(Tables::from_bytes(&damaged).is_err(), "byte {i}");
+        damaged.truncate(length);
+        damaged.extend(crc32fast::hash(&damaged).to_le_bytes());
+        // Never a panic; an error unless the byte is one of the free ones.
+        let _ = Tables::from_bytes(&damaged);
+    }
+    let other = rules().digits().derivation_order();
+    let mut swapped = other;
+    swapped[0].swap(1, 2);
+    let swapped = Rules::new(&Digits::from_derivation_order(swapped)).unwrap();
+    assert_eq!(bake::bake(&swapped, 1, Some(&relaxation())), Err(BakeError::OtherDigits));
 }
 
 #[test]

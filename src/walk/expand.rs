@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::batch::{tile_counts, tiles_at};
+use super::batch::{levels_below, tile_counts, tiles_at};
 use super::frame::{Frame, Segment};
 use super::node::{ExactPoint, Node};
 use crate::clip::Clip;
@@ -38,7 +38,7 @@ impl Open {
         bounds: [0.0; MAX_CHILDREN],
     };
 
-    /// Opens `node`, whose new descendants are born at most `levels` ≥ 1 levels below it.
+    /// Opens `node`, of whose descendants those with a rank under `node_limit` can be accepted.
     ///
     /// A child's own centre belongs to `node`'s batch. What is left below a level-(m + 1) child with
     /// rank r has ranks from N_{m+1} + r on, and its points are born at most `levels` − 1 levels below
@@ -48,7 +48,7 @@ impl Open {
         sampling: &Sampling<'_, I>,
         clip: &Clip,
         node: &Node,
-        levels: usize,
+        node_limit: u64,
         node_inside: bool,
     ) -> Result<(), SamplingError> {
         (self.node, self.pending, self.inside, self.constant) = (*node, 0, 0, 0);
@@ -60,7 +60,8 @@ impl Open {
         child_centres(sampling, node).write_columns(&mut x, &mut y);
 
         let corner = placement.domain().min();
-        let radius = placement.reach(node.level + 1, levels - 1);
+        let levels = levels_below(node, node_limit);
+        let radius = placement.reach(node.level + 1, levels.saturating_sub(1));
         let mut digits = [0u8; MAX_CHILDREN];
         let mut touching = 0;
         for digit in 0..children {
@@ -77,7 +78,9 @@ impl Open {
         let tiles_below = tiles_at(node.level + 1);
         for (i, bound) in bounds.iter().enumerate() {
             let region = Region { centre: corner + DVec2::new(x[i], y[i]), radius };
-            let limit = sampling.rank_limit_of_bound(*bound, &region)?;
+            // No child has more than its parent, even where a bound that is no promise says so: the
+            // disc above is made for the parent's limit.
+            let limit = sampling.rank_limit_of_bound(*bound, &region)?.min(node_limit);
             let digit = usize::from(digits[i]);
             let (a, b) = block.rank_coefficients(digit);
             let rank = node.rank + u64::from(a) * tiles - u64::from(b) * before;

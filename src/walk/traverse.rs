@@ -196,7 +196,7 @@ impl Traversal {
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
-        open.expand(sampling, &self.clip, node, levels, *inside)?;
+        open.expand(sampling, &self.clip, node, limit, *inside)?;
         // Deeper levels are wanted, so that all children's centres are.
         let end = block.born_before(2);
         let taken = share.is_none_or(|share| share.take(end as u64, self.depth + 1));
