@@ -43,8 +43,14 @@
 //!
 //! # Features
 //!
-//! `cli` (default) builds the program and brings its dependencies; libraries want
-//! `default-features = false`, which needs `alloc` only. `std` lets glam and serde use `std`.
+//! Libraries want `default-features = false`, which needs `alloc` only, and what they use of these:
+//!
+//! - `simd` (default): wider vector instructions, chosen when the program runs; the same points;
+//! - `parallel`: `fill_parallel` and `Shards`, with rayon; the same points in the same order;
+//! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
+//! - `train`: the module `relax`, which trains relaxed offsets;
+//! - `cli` (default): the program and all that it needs;
+//! - `std`: glam and serde use `std`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
@@ -53,6 +59,11 @@ extern crate std;
 
 #[cfg(test)]
 mod accuracy;
+/// The README's example, compiled and run with the other documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;
+
 pub mod bake;
 mod clip;
 mod domain;
