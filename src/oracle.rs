@@ -120,11 +120,18 @@ fn step<I: Importance>(
     if level < FIRST_RELAXED_LEVEL.into() {
         return DVec2::ZERO;
     }
-    let local = sampling.scale().threshold(sampling.importance().local(at));
-    let tau = (local / counts[level - 1] as f64).clamp(1.0, 7.0 + 4.0 * SQRT_3);
+    let local = sampling.scale().threshold(sampling.importance().local(at, value));
+    let tau = (local * (1.0 / counts[level - 1] as f64)).clamp(1.0, 7.0 + 4.0 * SQRT_3);
     let detail = sampling.importance().detail(at);
     let [x, y] = table.vector(&path[level].0, tau, detail);
-    let edge = sampling.placement().turned_edge(level as u8, path[level - 2].1);
+    // From the grandparent's frame to the great-grandparent's, in single precision; from there to the
+    // domain's.
+    let (grand, great) = (path[level - 2].1, path[level - 3].1);
+    let turn = f64::from((grand + 12 - great) % 12) * core::f64::consts::FRAC_PI_6;
+    let tidy = |v: f64| if v.abs() < 1e-9 { 0.0 } else { v as f32 };
+    let (c, s) = (tidy(libm::cos(turn)), tidy(libm::sin(turn)));
+    let (x, y) = (f64::from(c * x + -s * y), f64::from(s * x + c * y));
+    let edge = sampling.placement().turned_edge(level as u8, great);
     DVec2::new(edge.x * x + -edge.y * y, edge.y * x + edge.x * y)
 }
 

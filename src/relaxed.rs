@@ -3,9 +3,14 @@
 use alloc::string::ToString;
 use alloc::vec::Vec;
 
-use crate::bake::relaxation::{Layer, Relaxation, RelaxationError, Slot};
+use crate::bake::relaxation::{
+    FIRST_PHASE, Layer, PHASE_SHIFT, PHASES, Relaxation, RelaxationError, Slot,
+};
 use crate::bake::wire::{LayerBytes, SLOT_BYTES};
 use crate::tiling::Digits;
+
+/// Points whose vectors are looked up in one go.
+pub(crate) const RUN: usize = 64;
 
 /// Relaxed offsets: vectors by structural class and density phase, that turn the fixed centres of any
 /// density into an even set. See [`Relaxation`] for what they mean; this is the same, read in place.
@@ -52,17 +57,63 @@ impl<'a> RelaxationTable<'a> {
         self.rough.map_or(self.smooth.longest, |rough| rough.longest.max(self.smooth.longest))
     }
 
-    /// As [`Relaxation::vector`], of a point whose class over G generations is `class(G)`.
-    pub(crate) fn vector(&self, class: impl Fn(u32) -> u32, tau: f64, detail: f64) -> [f64; 2] {
-        let smooth = self.smooth.vector(&class, tau);
-        match &self.rough {
+    /// What a point reads at phase `tau` where the importance has contrast `detail`, whatever its class.
+    #[inline(always)]
+    pub(crate) fn reading(&self, tau: f64, detail: f64) -> Reading {
+        let rough = match &self.rough {
             Some(layer) if detail > 0.0 => {
-                let w = if detail < 1.0 { detail } else { 1.0 };
-                let rough = layer.vector(&class, tau);
-                [smooth[0] + (rough[0] - smooth[0]) * w, smooth[1] + (rough[1] - smooth[1]) * w]
+                Some((layer.phase(tau), if detail < 1.0 { detail as f32 } else { 1.0 }))
+            }
+            _ => None,
+        };
+        Reading { smooth: self.smooth.phase(tau), rough }
+    }
+
+    /// As [`Relaxation::vector`], of a point whose class over G generations is `class(G)`.
+    #[inline(always)]
+    pub(crate) fn vector(&self, reading: &Reading, class: impl Fn(u32) -> u32) -> [f32; 2] {
+        let smooth = self.smooth.vector(reading.smooth, &class);
+        match (&self.rough, reading.rough) {
+            (Some(layer), Some((phase, share))) => {
+                let rough = layer.vector(phase, &class);
+                let mix = |a: f32, b: f32| a + (b - a) * share;
+                [mix(smooth[0], rough[0]), mix(smooth[1], rough[1])]
             }
             _ => smooth,
         }
+    }
+
+    /// [`vector`](Self::vector) of the first `len` points of a run with the phases `tau` and the
+    /// contrasts `detail`, the class of point `i` over G generations being `class(i, G)`.
+    #[inline(always)]
+    pub(crate) fn vectors(
+        &self,
+        len: usize,
+        tau: &[f64; RUN],
+        detail: &[f64; RUN],
+        class: impl Fn(usize, u32) -> u32,
+    ) -> [[f32; RUN]; 2] {
+        let [mut x, mut y] = self.smooth.vectors(len, tau, &class);
+        let rough = self.rough.filter(|_| detail.iter().take(len).any(|detail| *detail > 0.0));
+        if let Some(layer) = rough {
+            let [rough_x, rough_y] = layer.vectors(len, tau, &class);
+            for i in 0..len.min(RUN) {
+                let share = if detail[i] < 1.0 { detail[i] as f32 } else { 1.0 };
+                let share = if detail[i] > 0.0 { share } else { 0.0 };
+                x[i] += (rough_x[i] - x[i]) * share;
+                y[i] += (rough_y[i] - y[i]) * share;
+            }
+        }
+        [x, y]
+    }
+
+    /// The most generations that a class is asked for at the phase of a reading.
+    pub(crate) fn generations(&self, reading: &Reading) -> u32 {
+        let rough = match (&self.rough, reading.rough) {
+            (Some(layer), Some((phase, _))) => layer.generations(phase),
+            _ => 0,
+        };
+        self.smooth.generations(reading.smooth).max(rough)
     }
 
     /// Everything decoded, for checking and for baking anew.
@@ -76,17 +127,53 @@ impl<'a> RelaxationTable<'a> {
     }
 }
 
+/// What a point reads, whatever its class.
+#[derive(Clone, Copy)]
+pub(crate) struct Reading {
+    smooth: Option<Phase>,
+    /// And the rough layer's share.
+    rough: Option<(Option<Phase>, f32)>,
+}
+
+/// A phase between two slots of a layer.
+#[derive(Clone, Copy)]
+struct Phase {
+    /// The slot at or below the phase; there is a next one.
+    first: usize,
+    /// How far from the first to the next, in [0, 1).
+    share: f32,
+}
+
 /// One layer: slots in ascending order of τ.
 #[derive(Clone, Copy, Debug)]
 struct LayerTable<'a> {
     slots: &'a [[u8; SLOT_BYTES]],
     vectors: &'a [[u8; 2]],
+    phases: &'a [[u8; 2]],
     longest: f64,
+}
+
+/// A vector as it is stored: i8 components in units of a scale.
+#[derive(Clone, Copy)]
+struct Entry {
+    units: [u8; 2],
+    scale: f32,
+}
+
+impl Entry {
+    const ZERO: Self = Self { units: [0; 2], scale: 0.0 };
+
+    #[inline(always)]
+    fn vector(self) -> [f32; 2] {
+        self.units.map(|v| f32::from(v as i8) * self.scale)
+    }
 }
 
 /// A slot's record, decoded.
 #[derive(Clone, Copy)]
 struct SlotRecord {
+    tau: f32,
+    per_phase: f32,
     scale: f32,
     start: usize,
     generations: u32,
@@ -97,73 +184,146 @@ impl<'a> LayerTable<'a> {
     fn new(bytes: &LayerBytes<'a>) -> Option<Self> {
         let (slots, rest) = bytes.slots.as_chunks::<SLOT_BYTES>();
         let (vectors, odd) = bytes.vectors.as_chunks::<2>();
+        let (phases, uneven) = bytes.phases.as_chunks::<2>();
+        let whole = rest.is_empty() && odd.is_empty() && uneven.is_empty();
         let sensible = bytes.longest >= 0.0 && bytes.longest < 1e6;
-        (rest.is_empty() && odd.is_empty() && sensible).then_some(Self {
+        (whole && sensible && phases.len() == PHASES).then_some(Self {
             slots,
             vectors,
+            phases,
             longest: bytes.longest,
         })
     }
 
+    #[inline(always)]
     fn tau(&self, slot: usize) -> f64 {
         let [a, b, c, d, ..] = self.slots[slot];
         f64::from(f32::from_le_bytes([a, b, c, d]))
     }
 
+    #[inline(always)]
     fn record(&self, slot: usize) -> SlotRecord {
         let (fields, _) = self.slots[slot].as_chunks::<4>();
-        let packed = u32::from_le_bytes(fields[3]);
+        let packed = u32::from_le_bytes(fields[4]);
         SlotRecord {
-            scale: f32::from_le_bytes(fields[1]),
-            start: u32::from_le_bytes(fields[2]) as usize,
+            tau: f32::from_le_bytes(fields[0]),
+            per_phase: f32::from_le_bytes(fields[1]),
+            scale: f32::from_le_bytes(fields[2]),
+            start: u32::from_le_bytes(fields[3]) as usize,
             generations: packed >> 24,
             count: packed & 0xff_ffff,
         }
     }
 
-    /// As [`Layer::vector`].
-    fn vector(&self, class: &impl Fn(u32) -> u32, tau: f64) -> [f64; 2] {
-        // The number of slots with τ_slot ≤ τ.
-        let (mut after, mut high) = (0, self.slots.len());
-        while after < high {
-            let middle = after + (high - after) / 2;
-            if self.tau(middle) <= tau { after = middle + 1 } else { high = middle }
+    /// The slots on either side of a phase; `None` at and past the ends, where nothing moves.
+    #[inline(always)]
+    fn phase(&self, tau: f64) -> Option<Phase> {
+        // Rising with τ from 1 on; what is below, or NaN, starts at one end or the other.
+        let interval = (tau.to_bits() >> PHASE_SHIFT).saturating_sub(FIRST_PHASE);
+        let start = self.phases[interval.min(PHASES as u64 - 1) as usize];
+        let mut after = usize::from(u16::from_le_bytes(start));
+        while after < self.slots.len() && self.tau(after) <= tau {
+            after += 1;
         }
-        if after == 0 || after == self.slots.len() {
-            return [0.0; 2];
+        if after >= self.slots.len() {
+            return None;
         }
-        let (low, high) = (self.tau(after - 1), self.tau(after));
-        let w = (tau - low) / (high - low);
-        let (a, b) = (self.entry(class, after - 1), self.entry(class, after));
-        [a[0] + (b[0] - a[0]) * w, a[1] + (b[1] - a[1]) * w]
+        let first = after.checked_sub(1)?;
+        let SlotRecord { tau: low, per_phase, .. } = self.record(first);
+        Some(Phase { first, share: (tau - f64::from(low)) as f32 * per_phase })
     }
 
-    /// As [`Layer::entry`].
-    fn entry(&self, class: &impl Fn(u32) -> u32, first: usize) -> [f64; 2] {
-        if first == 0 {
-            return [0.0; 2];
-        }
-        for slot in first..self.slots.len() {
-            let SlotRecord { scale, start, generations, count } = self.record(slot);
-            let class = class(generations);
-            if class < count {
-                let vector = self.vectors.get(start + class as usize).copied().unwrap_or_default();
-                return vector.map(|v| f64::from(v as i8) * f64::from(scale));
+    /// As [`Layer::vector`].
+    #[inline(always)]
+    fn vector(&self, phase: Option<Phase>, class: &impl Fn(u32) -> u32) -> [f32; 2] {
+        let Some(phase) = phase else { return [0.0; 2] };
+        let [a, b] = self.entries(phase.first, class);
+        let mix = |a: f32, b: f32| a + (b - a) * phase.share;
+        let ([ax, ay], [bx, by]) = (a.vector(), b.vector());
+        [mix(ax, bx), mix(ay, by)]
+    }
+
+    /// [`vector`](Self::vector) of many: in one loop what must be looked up, in another, without
+    /// branches, what is done with it.
+    #[inline(always)]
+    fn vectors(
+        &self,
+        len: usize,
+        tau: &[f64; RUN],
+        class: &impl Fn(usize, u32) -> u32,
+    ) -> [[f32; RUN]; 2] {
+        let (mut a, mut b) = ([[0u8; 2]; RUN], [[0u8; 2]; RUN]);
+        let (mut a_scale, mut b_scale, mut shares) = ([0.0f32; RUN], [0.0f32; RUN], [0.0f32; RUN]);
+        for i in 0..len.min(RUN) {
+            if let Some(Phase { first, share }) = self.phase(tau[i]) {
+                let entries = self.entries(first, &|generations| class(i, generations));
+                [(a[i], a_scale[i]), (b[i], b_scale[i])] = entries.map(|e| (e.units, e.scale));
+                shares[i] = share;
             }
         }
-        [0.0; 2]
+        let [mut x, mut y] = [[0.0; RUN]; 2];
+        for i in 0..len.min(RUN) {
+            let mix = |a: f32, b: f32| a + (b - a) * shares[i];
+            let [ax, ay] = a[i].map(|v| f32::from(v as i8) * a_scale[i]);
+            let [bx, by] = b[i].map(|v| f32::from(v as i8) * b_scale[i]);
+            (x[i], y[i]) = (mix(ax, bx), mix(ay, by));
+        }
+        [x, y]
+    }
+
+    /// As [`Layer::entry`], of the slot `first` and the next one.
+    #[inline(always)]
+    fn entries(&self, first: usize, class: &impl Fn(u32) -> u32) -> [Entry; 2] {
+        let (before, after) = (self.record(first), self.record(first + 1));
+        let number = class(before.generations);
+        let a = match first {
+            0 => Entry::ZERO,
+            _ if number < before.count => self.entry(&before, number),
+            _ => self.entry_later(class, first + 1),
+        };
+        // Most often as many generations.
+        let number =
+            if after.generations == before.generations { number } else { class(after.generations) };
+        let b = match number < after.count {
+            true => self.entry(&after, number),
+            false => self.entry_later(class, first + 2),
+        };
+        [a, b]
+    }
+
+    fn generations(&self, phase: Option<Phase>) -> u32 {
+        let first = phase.map_or(self.slots.len(), |phase| phase.first);
+        let later = (first..self.slots.len()).map(|slot| self.record(slot).generations);
+        later.max().unwrap_or(0)
+    }
+
+    /// Of the first slot from `from` on that holds the class.
+    #[cold]
+    #[inline(never)]
+    fn entry_later(&self, class: &impl Fn(u32) -> u32, from: usize) -> Entry {
+        let later = (from..self.slots.len()).map(|slot| self.record(slot));
+        let mut holding = later.filter(|record| class(record.generations) < record.count);
+        holding
+            .next()
+            .map_or(Entry::ZERO, |record| self.entry(&record, class(record.generations)))
+    }
+
+    #[inline(always)]
+    fn entry(&self, record: &SlotRecord, class: u32) -> Entry {
+        let units = self.vectors.get(record.start + class as usize).copied().unwrap_or_default();
+        Entry { units, scale: record.scale }
     }
 
     fn to_layer(self, layer: u8) -> Result<Layer, RelaxationError> {
         let slots = (0..self.slots.len()).map(|i| {
-            let SlotRecord { scale, start, generations, count } = self.record(i);
+            let SlotRecord { tau, scale, start, generations, count, .. } = self.record(i);
             let found = count;
             let vectors = self
                 .vectors
                 .get(start..start.saturating_add(count as usize))
                 .ok_or(RelaxationError::VectorCount { layer, slot: i, found })?;
             Ok(Slot {
-                tau: self.tau(i) as f32,
+                tau,
                 generations: generations as u8,
                 scale,
                 vectors: vectors.iter().map(|v| v.map(|component| component as i8)).collect(),

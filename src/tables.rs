@@ -224,6 +224,9 @@ pub struct BlockTable<'a> {
     rank_a: &'a [[u8; 2]],
     rank_b: &'a [[u8; 2]],
     thresholds: &'a [[u8; 4]],
+    /// Empty below depth 3.
+    turns: &'a [u8],
+    classes: &'a [[u8; 2]],
     offsets: [Offsets<'a>; 3],
 }
 
@@ -246,12 +249,18 @@ impl<'a> BlockTable<'a> {
         };
         let (thresholds, rest) = bytes.thresholds.as_chunks::<4>();
         (rest.is_empty() && thresholds.len() == entries).then_some(())?;
+        let (classes, rest) = bytes.classes.as_chunks::<2>();
+        let thirds = if depth < 3 { 0 } else { born_before[4] as usize };
+        let fitting = bytes.turns.len() == thirds && classes.len() == thirds && rest.is_empty();
+        fitting.then_some(())?;
         Some(Self {
             bytes,
             born_before,
             rank_a: pairs(bytes.rank_a)?,
             rank_b: pairs(bytes.rank_b)?,
             thresholds,
+            turns: bytes.turns,
+            classes,
             offsets: [even, turned_30, turned_60],
         })
     }
@@ -284,6 +293,22 @@ impl<'a> BlockTable<'a> {
             .iter()
             .zip(&self.rank_b[range])
             .map(move |(a, b)| (number(a), number(b)))
+    }
+
+    /// Of the entries born at most three levels down, as they are there: the rotation of their ancestor
+    /// one level down, relative to the block, and their class over two generations. None below
+    /// depth 3.
+    pub(crate) fn thirds(&self) -> impl ExactSizeIterator<Item = (u8, u16)> + 'a {
+        self.turns.iter().zip(self.classes).map(|(turn, class)| (*turn, u16::from_le_bytes(*class)))
+    }
+
+    /// Of entry `i` among the [`thirds`](Self::thirds); zeros past them.
+    #[inline(always)]
+    pub(crate) fn third(&self, i: usize) -> (u8, u16) {
+        match (self.turns.get(i), self.classes.get(i)) {
+            (Some(turn), Some(class)) => (*turn, u16::from_le_bytes(*class)),
+            _ => (0, 0),
+        }
     }
 
     /// The offset of entry `i` < [`len`](Self::len), turned by `turn`·30°, `turn` in 0..3.

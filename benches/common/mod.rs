@@ -10,7 +10,8 @@ use std::hint::black_box;
 
 use glam::Vec2;
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, Placement, Sampling, Tables, bake,
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Placement, Sampling,
+    SamplingError, StippleMap, Tables, bake,
 };
 
 use maps::Map;
@@ -53,20 +54,34 @@ impl<'a> Contender<'a> {
     }
 }
 
-/// Ours: the placement is kept, the sampling is made anew, as in a frame.
-fn ours<'a, I: Importance>(
+/// The sampling of `n` points, relaxed or fixed.
+fn sampling<'a, I: Importance>(
+    placement: &'a Placement<'a>,
+    importance: &'a I,
+    n: usize,
+    relaxed: bool,
+) -> Result<Sampling<'a, I>, SamplingError> {
+    let sampling = Sampling::new(placement, importance, Amount::Points(n as f64))?;
+    if relaxed { sampling.relaxed() } else { Ok(sampling) }
+}
+
+/// Ours: the placement is kept, the sampling is made anew, as in a frame. `importance` makes what is
+/// sampled for a number of points, before the clock runs.
+fn ours<'a, I: Importance + 'a>(
     name: &str,
     domain: Domain,
     tables: Tables<'static>,
-    importance: &'a I,
+    relaxed: bool,
+    importance: impl Fn(usize) -> I + 'a,
 ) -> Contender<'a> {
     Contender::new(name, move |n| {
+        let importance = importance(n);
         // The seed whose number is nearest to the expected one: the time a point is compared.
         let placements: Vec<_> =
             (0..8).map(|seed| Placement::with_tables(domain, seed, tables)).collect();
         let mut buffer = vec![Vec2::ZERO; n + n / 8 + 64];
         let mut off = |placement: &Placement<'_>| {
-            let sampling = Sampling::new(placement, importance, Amount::Points(n as f64));
+            let sampling = sampling(placement, &importance, n, relaxed);
             let made = sampling.and_then(|s| s.fill(&mut buffer)).expect("a valid sampling");
             made.written.abs_diff(n)
         };
@@ -76,7 +91,7 @@ fn ours<'a, I: Importance>(
             placements.iter().min_by_key(|p| off(p)).expect("eight placements").clone()
         };
         move |buffer: &mut [Vec2]| {
-            let sampling = Sampling::new(&placement, importance, Amount::Points(n as f64));
+            let sampling = sampling(&placement, &importance, n, relaxed);
             let filled = sampling.and_then(|s| s.fill(buffer)).expect("a valid sampling");
             assert!(filled.complete);
             filled.written
@@ -103,8 +118,10 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
         // Kept for the whole run.
         let tables = Tables::from_bytes(bytes.leak()).expect("baked just now");
         let name = format!("twelvefold, baked depth {depth}");
-        all.push(ours(&name, Domain::unit(), tables, &Constant::ONE));
+        all.push(ours(&name, Domain::unit(), tables, false, |_| Constant::ONE));
     }
+    let tables = Tables::built_in();
+    all.push(ours("twelvefold, relaxed", Domain::unit(), tables, true, |_| Constant::ONE));
     all.extend(peers::uniform());
     all
 }
@@ -112,8 +129,18 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
 /// An importance map over its pixels, memcpy first.
 pub(crate) fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
     let importance: &'a ImageMap = &map.importance;
+    let (domain, tables) = (importance.domain(), Tables::built_in());
     let mut all = vec![memcpy()];
-    all.push(ours("twelvefold", importance.domain(), Tables::built_in(), importance));
+    all.push(ours("twelvefold", domain, tables, false, move |_| importance));
+    all.push(ours("twelvefold, relaxed", domain, tables, true, move |_| importance));
+    let stipple = move |n: usize| {
+        let pixels = importance.pixels().to_vec();
+        let (side, reject) = (maps::SIDE, InvalidPixels::Reject);
+        StippleMap::new(side, side, pixels, reject, n as f64).expect("a valid map")
+    };
+    let stippled = ours("twelvefold, relaxed stipple", domain, tables, true, stipple);
+    // A prepared map for each of many points is more memory than a bench needs.
+    all.push(stippled.at_most(1 << 20));
     all.extend(peers::image(map));
     all
 }

@@ -12,6 +12,7 @@
 use alloc::vec::Vec;
 
 use super::BakeError;
+use super::class::Classes;
 use crate::tiling::cyclotomic::Surd;
 use crate::tiling::{Cyclotomic, Rules, Tile, TileType};
 
@@ -29,10 +30,31 @@ pub struct Entry {
     pub offset: Cyclotomic,
 }
 
+/// An entry three levels below the block's tile, where relaxed points read their vectors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Third {
+    /// How its ancestor one level below the block's tile is turned, in units of 30°.
+    pub turn: u8,
+    /// Its class over two generations.
+    pub class: u16,
+}
+
 /// The entries of one tile type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
     entries: Vec<Entry>,
+    thirds: Vec<Third>,
+}
+
+/// A tile during subdivision, with its rank coefficients and what it remembers of its ancestor one
+/// level below the block's tile: its rotation, and the classes counted from there.
+#[derive(Clone, Copy)]
+struct Growing {
+    tile: Tile,
+    rank_a: i64,
+    rank_b: i64,
+    turn: u8,
+    classes: Classes,
 }
 
 impl Block {
@@ -40,12 +62,14 @@ impl Block {
     pub(super) fn subdivide(rules: &Rules, kind: TileType, depth: u8) -> Result<Self, BakeError> {
         let mut entries =
             Vec::from([Entry { rank_a: 0, rank_b: 0, born: 0, offset: Cyclotomic::ZERO }]);
-        let mut level = Vec::from([(Tile::root(kind), 0i64, 0i64)]);
+        let (tile, classes) = (Tile::root(kind), Classes::root(kind));
+        let mut level = Vec::from([Growing { tile, rank_a: 0, rank_b: 0, turn: 0, classes }]);
+        let mut thirds = Vec::new();
         // N_{m+j} = a·N_m − b·N_{m−1}: (a, b) of the level above the current one, and of the current.
         let (mut above, mut here) = ((0i64, -1i64), (1i64, 0i64));
         for born in 1..=depth {
             let mut next = Vec::with_capacity(level.len() * 14);
-            for &(tile, rank_a, rank_b) in &level {
+            for &Growing { tile, rank_a, rank_b, turn, classes } in &level {
                 for digit in 0..tile.kind.child_count() as u8 {
                     let child = rules.child_of(&tile, digit).map_err(|_| BakeError::Range)?;
                     let child = child.ok_or(BakeError::Range)?;
@@ -60,14 +84,31 @@ impl Block {
                             offset: child.centre,
                         });
                     }
-                    next.push((child, rank_a, rank_b));
+                    let (turn, classes) = match born {
+                        1 => (child.rotation, Classes::root(child.kind)),
+                        _ => (turn, classes.child(digit, child.kind)),
+                    };
+                    if born == 3 {
+                        let class = classes.over(2) as u16;
+                        thirds.push((rank_a, Third { turn, class }));
+                    }
+                    next.push(Growing { tile: child, rank_a, rank_b, turn, classes });
                 }
             }
             level = next;
             (above, here) = (here, (14 * here.0 - above.0, 14 * here.1 - above.1));
         }
         entries.sort_by_key(|entry| entry.rank_a);
-        Ok(Self { entries })
+        thirds.sort_by_key(|(rank_a, _)| *rank_a);
+        let thirds = thirds.into_iter().map(|(_, third)| third).collect();
+        Ok(Self { entries, thirds })
+    }
+
+    /// The entries born at most three levels down, as they are there, in the order of their ranks;
+    /// none at a depth below 3.
+    #[must_use]
+    pub fn thirds(&self) -> &[Third] {
+        &self.thirds
     }
 
     /// The entries in the order of their ranks.

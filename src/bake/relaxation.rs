@@ -192,6 +192,14 @@ impl fmt::Display for RelaxationError {
 
 impl core::error::Error for RelaxationError {}
 
+/// Intervals of τ in which a search for slots may start: 64 an octave of [1, 16), which the first bits
+/// of an `f64` tell.
+pub(crate) const PHASES: usize = 256;
+
+/// The bits of an `f64` that are not looked at, and those before them of τ = 1.
+pub(crate) const PHASE_SHIFT: u32 = 46;
+pub(crate) const FIRST_PHASE: u64 = 1023 << 6;
+
 /// δ = 7 + 4√3 as the last slot stores it.
 pub const DELTA: f32 = (7.0 + 4.0 * crate::tiling::cyclotomic::SQRT_3) as f32;
 
@@ -271,35 +279,51 @@ impl Layer {
     /// The vector of a point at phase `tau`, in its grandparent's frame, in edges of its level.
     ///
     /// `tau` outside [1, δ] is taken as the nearer end, NaN as 1. With slots i and i + 1 such that
-    /// τ_i ≤ τ < τ_{i+1}, and w = (τ − τ_i)/(τ_{i+1} − τ_i), it is v_i + (v_{i+1} − v_i)·w, all in
-    /// `f64`, each operation rounded once. v_i is the class's entry of slot i times its scale; a class
-    /// not yet born there takes the entry of the first later slot that holds it.
+    /// τ_i ≤ τ < τ_{i+1}, and w = (τ − τ_i)·[`per_phase`](Self::per_phase), it is v_i + (v_{i+1} − v_i)·w;
+    /// τ − τ_i is computed in `f64` and rounded to `f32`, and so is every other operation. v_i is the
+    /// class's entry of slot i times its scale; a class not yet born there takes the entry of the first
+    /// later slot that holds it.
     #[must_use]
-    pub fn vector(&self, classes: &Classes, tau: f64) -> [f64; 2] {
+    pub fn vector(&self, classes: &Classes, tau: f64) -> [f32; 2] {
         let after = self.slots.partition_point(|slot| f64::from(slot.tau) <= tau);
         if after == 0 || after == self.slots.len() {
             return [0.0; 2];
         }
-        let (i, low, high) =
-            (after - 1, f64::from(self.slots[after - 1].tau), f64::from(self.slots[after].tau));
-        let w = (tau - low) / (high - low);
+        let i = after - 1;
+        let w = (tau - f64::from(self.slots[i].tau)) as f32 * self.per_phase(i);
         let (a, b) = (self.entry(classes, i), self.entry(classes, i + 1));
         [a[0] + (b[0] - a[0]) * w, a[1] + (b[1] - a[1]) * w]
     }
 
+    /// 1/(τ_{i+1} − τ_i), in `f32`; 0 for the last slot.
+    #[must_use]
+    pub fn per_phase(&self, i: usize) -> f32 {
+        self.slots.get(i + 1).map_or(0.0, |next| 1.0 / (next.tau - self.slots[i].tau))
+    }
+
     /// The vector of a class at slot `i`, or at the first later slot that holds it.
     #[must_use]
-    pub fn entry(&self, classes: &Classes, i: usize) -> [f64; 2] {
+    pub fn entry(&self, classes: &Classes, i: usize) -> [f32; 2] {
         if i == 0 {
             return [0.0; 2];
         }
         for slot in self.slots.iter().skip(i) {
             let class = classes.over(usize::from(slot.generations)) as usize;
             if let Some(vector) = slot.vectors.get(class) {
-                return vector.map(|v| f64::from(v) * f64::from(slot.scale));
+                return vector.map(|v| f32::from(v) * slot.scale);
             }
         }
         [0.0; 2]
+    }
+
+    /// For each of [`PHASES`] intervals of τ, the number of slots at or below its beginning: where the
+    /// search for a slot starts.
+    pub(super) fn phases(&self) -> impl Iterator<Item = u16> {
+        (0..PHASES).map(|interval| {
+            let begin = f64::from_bits((FIRST_PHASE + interval as u64) << PHASE_SHIFT);
+            // At most 65,535 slots.
+            self.slots.partition_point(|slot| f64::from(slot.tau) <= begin) as u16
+        })
     }
 
     /// A bound on the length of every vector at phases in [`from`, `to`], in edges of the point's
@@ -417,11 +441,11 @@ impl Relaxation {
     /// grandparent's frame and in edges of the point's level: smooth + (rough − smooth)·detail.
     /// `detail`, the rough layer's share, is clamped to [0, 1]; it does nothing without a rough layer.
     #[must_use]
-    pub fn vector(&self, classes: &Classes, tau: f64, detail: f64) -> [f64; 2] {
+    pub fn vector(&self, classes: &Classes, tau: f64, detail: f64) -> [f32; 2] {
         let smooth = self.smooth.vector(classes, tau);
         match &self.rough {
             Some(layer) if detail > 0.0 => {
-                let w = detail.min(1.0);
+                let w = detail.min(1.0) as f32;
                 let rough = layer.vector(classes, tau);
                 [smooth[0] + (rough[0] - smooth[0]) * w, smooth[1] + (rough[1] - smooth[1]) * w]
             }

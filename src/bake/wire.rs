@@ -18,7 +18,7 @@ use crate::tiling::{Rules, TileType};
 pub(crate) const MAGIC: [u8; 8] = *b"12fold\r\n";
 
 /// Format version, raised by every change of layout or meaning.
-pub(crate) const VERSION: u16 = 2;
+pub(crate) const VERSION: u16 = 3;
 
 /// Largest document that is looked at: depth 4 needs 5.3 MB, and room is left for relaxed offsets.
 const MAX_BYTES: usize = 1 << 26;
@@ -58,13 +58,16 @@ pub(crate) struct LayerBytes<'a> {
     pub(crate) slots: &'a [u8],
     /// All slots' vectors, i8 pairs, in the order of their classes.
     pub(crate) vectors: &'a [u8],
+    /// Where the search for a phase's slot starts, u16, see [`Layer::phases`].
+    pub(crate) phases: &'a [u8],
 }
 
 /// Bytes of a slot's record.
-pub(crate) const SLOT_BYTES: usize = 16;
+pub(crate) const SLOT_BYTES: usize = 20;
 
-/// τ (f32), scale (f32), index of the first vector (u32), generations · 2²⁴ + number of vectors (u32).
-fn slot_record(slot: &Slot, start: usize) -> Result<[u8; SLOT_BYTES], BakeError> {
+/// τ (f32), 1/(τ of the next slot − τ) (f32), scale (f32), index of the first vector (u32), generations ·
+/// 2²⁴ + number of vectors (u32).
+fn slot_record(slot: &Slot, per_phase: f32, start: usize) -> Result<[u8; SLOT_BYTES], BakeError> {
     let number = |n: usize| u32::try_from(n).map_err(|_| BakeError::Range);
     let count = number(slot.vectors.len())?;
     if count >> 24 != 0 {
@@ -72,6 +75,7 @@ fn slot_record(slot: &Slot, start: usize) -> Result<[u8; SLOT_BYTES], BakeError>
     }
     let fields = [
         slot.tau.to_le_bytes(),
+        per_phase.to_le_bytes(),
         slot.scale.to_le_bytes(),
         number(start)?.to_le_bytes(),
         (u32::from(slot.generations) << 24 | count).to_le_bytes(),
@@ -83,15 +87,30 @@ fn slot_record(slot: &Slot, start: usize) -> Result<[u8; SLOT_BYTES], BakeError>
     Ok(record)
 }
 
-/// Records, vectors and the length of the longest vector of a layer.
-fn layer_columns(layer: &Layer) -> Result<(Vec<u8>, Vec<u8>, f64), BakeError> {
-    let (mut records, mut vectors, mut longest) = (Vec::new(), Vec::new(), 0.0f64);
-    for slot in layer.slots() {
-        records.extend(slot_record(slot, vectors.len() / 2)?);
-        vectors.extend(slot.vectors.iter().flatten().map(|component| *component as u8));
-        longest = longest.max(slot.longest());
+/// Owned arrays from which a layer's bytes borrow.
+struct LayerColumns {
+    longest: f64,
+    slots: Vec<u8>,
+    vectors: Vec<u8>,
+    phases: Vec<u8>,
+}
+
+impl LayerColumns {
+    fn new(layer: &Layer) -> Result<Self, BakeError> {
+        let (mut slots, mut vectors, mut longest) = (Vec::new(), Vec::new(), 0.0f64);
+        for (i, slot) in layer.slots().iter().enumerate() {
+            slots.extend(slot_record(slot, layer.per_phase(i), vectors.len() / 2)?);
+            vectors.extend(slot.vectors.iter().flatten().map(|component| *component as u8));
+            longest = longest.max(slot.longest());
+        }
+        let phases = layer.phases().flat_map(u16::to_le_bytes).collect();
+        Ok(Self { longest, slots, vectors, phases })
     }
-    Ok((records, vectors, longest))
+
+    fn as_bytes(&self) -> LayerBytes<'_> {
+        let Self { longest, slots, vectors, phases } = self;
+        LayerBytes { longest: *longest, slots, vectors, phases }
+    }
 }
 
 /// One type's block. Each field is an array of little-endian values, one an entry.
@@ -103,6 +122,11 @@ pub(crate) struct BlockBytes<'a> {
     pub(crate) rank_b: &'a [u8],
     /// Normalized thresholds, f32.
     pub(crate) thresholds: &'a [u8],
+    /// At depth 3 and more, of the entries born at most three levels down, as they are there: how
+    /// their ancestor one level down is turned, in units of 30°, and their class over two generations,
+    /// u16.
+    pub(crate) turns: &'a [u8],
+    pub(crate) classes: &'a [u8],
     /// Offsets turned by 0°, 30° and 60° (quarter turns are applied exactly at run time): for each
     /// the four fields u, v, p, q of (u + v√3)/2, (p + q√3)/2, i16, one array a field.
     #[serde(borrow)]
@@ -114,6 +138,8 @@ struct BlockColumns {
     rank_a: Vec<u8>,
     rank_b: Vec<u8>,
     thresholds: Vec<u8>,
+    turns: Vec<u8>,
+    classes: Vec<u8>,
     offsets: [[Vec<u8>; 4]; 3],
 }
 
@@ -132,6 +158,8 @@ impl BlockColumns {
             rank_a: entries.iter().flat_map(|e| e.rank_a.to_le_bytes()).collect(),
             rank_b: entries.iter().flat_map(|e| e.rank_b.to_le_bytes()).collect(),
             thresholds: entries.iter().flat_map(|e| e.threshold(depth).to_le_bytes()).collect(),
+            turns: block.thirds().iter().map(|third| third.turn).collect(),
+            classes: block.thirds().iter().flat_map(|third| third.class.to_le_bytes()).collect(),
             offsets,
         })
     }
@@ -141,6 +169,8 @@ impl BlockColumns {
             rank_a: &self.rank_a,
             rank_b: &self.rank_b,
             thresholds: &self.thresholds,
+            turns: &self.turns,
+            classes: &self.classes,
             offsets: self.offsets.each_ref().map(|columns| columns.each_ref().map(Vec::as_slice)),
         }
     }
@@ -161,8 +191,8 @@ pub(crate) fn encode(
             *slot = (child.kind as u8, child.rotation);
         }
     }
-    let smooth = relaxation.map(|relaxation| layer_columns(&relaxation.smooth)).transpose()?;
-    let rough = relaxation.and_then(|r| r.rough.as_ref()).map(layer_columns).transpose()?;
+    let smooth = relaxation.map(|relaxation| LayerColumns::new(&relaxation.smooth)).transpose()?;
+    let rough = relaxation.and_then(|r| r.rough.as_ref()).map(LayerColumns::new).transpose()?;
     let layers = [smooth, rough];
     let document = Document {
         magic: MAGIC,
@@ -173,9 +203,7 @@ pub(crate) fn encode(
         blocks: columns.each_ref().map(BlockColumns::as_bytes),
         provenance: relaxation.map_or("", |relaxation| &relaxation.provenance),
         layers: layers.each_ref().map(|layer| {
-            layer.as_ref().map_or_else(LayerBytes::default, |(slots, vectors, longest)| {
-                LayerBytes { longest: *longest, slots, vectors }
-            })
+            layer.as_ref().map_or_else(LayerBytes::default, LayerColumns::as_bytes)
         }),
     };
     let mut bytes =

@@ -69,10 +69,12 @@ pub trait Importance {
         None
     }
 
-    /// Relaxed points only: the importance that the density phase is read from, `value` averaged at
-    /// the scale of the points' spacing. The same as `value` if that is smooth.
-    fn local(&self, at: DVec2) -> f64 {
-        self.value(at)
+    /// Relaxed points only: the importance that the density phase is read from: averaged at the scale
+    /// of the points' spacing around a place where it is `value`. The same if it is smooth.
+    #[inline]
+    fn local(&self, at: DVec2, value: f64) -> f64 {
+        let _ = at;
+        value
     }
 
     /// Relaxed points only: how much the importance varies at the scale of the spacing, from 0, smooth,
@@ -92,7 +94,7 @@ pub trait Importance {
     }
 
     /// The farthest that [`settle`](Self::settle) takes a point away from where relaxation moved it, in
-    /// units.
+    /// units. 0: it is not asked at all.
     fn longest_settling(&self) -> f64 {
         0.0
     }
@@ -104,51 +106,81 @@ pub trait Importance {
     }
 
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
-    /// test of their own.
+    /// test of their own. Where it does, [`local`](Self::local) equals it too, there is no
+    /// [`detail`](Self::detail), and nothing [settles](Self::settle).
     fn is_constant(&self, region: &Region) -> bool {
         let _ = region;
         false
     }
 }
 
-impl<I: Importance + ?Sized> Importance for &I {
-    fn value(&self, at: DVec2) -> f64 {
-        (**self).value(at)
-    }
+/// What a reference does: everything that it refers to.
+macro_rules! forward {
+    () => {
+        fn value(&self, at: DVec2) -> f64 {
+            (**self).value(at)
+        }
 
-    fn upper_bound(&self, region: &Region) -> f64 {
-        (**self).upper_bound(region)
-    }
+        fn upper_bound(&self, region: &Region) -> f64 {
+            (**self).upper_bound(region)
+        }
 
-    fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
-        (**self).upper_bounds(origin, x, y, radius, bounds);
-    }
+        #[inline]
+        fn upper_bounds(
+            &self,
+            origin: DVec2,
+            x: &[f64],
+            y: &[f64],
+            radius: f64,
+            bounds: &mut [f64],
+        ) {
+            (**self).upper_bounds(origin, x, y, radius, bounds);
+        }
 
-    fn integral(&self, domain: &Domain) -> Option<f64> {
-        (**self).integral(domain)
-    }
+        fn integral(&self, domain: &Domain) -> Option<f64> {
+            (**self).integral(domain)
+        }
 
-    fn local(&self, at: DVec2) -> f64 {
-        (**self).local(at)
-    }
+        #[inline]
+        fn local(&self, at: DVec2, value: f64) -> f64 {
+            (**self).local(at, value)
+        }
 
-    fn detail(&self, at: DVec2) -> f64 {
-        (**self).detail(at)
-    }
+        #[inline]
+        fn detail(&self, at: DVec2) -> f64 {
+            (**self).detail(at)
+        }
 
-    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        (**self).settle(centre, moved, needed)
-    }
+        #[inline]
+        fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+            (**self).settle(centre, moved, needed)
+        }
 
-    fn longest_settling(&self) -> f64 {
-        (**self).longest_settling()
-    }
+        #[inline]
+        fn longest_settling(&self) -> f64 {
+            (**self).longest_settling()
+        }
 
-    fn bounds_hold(&self) -> bool {
-        (**self).bounds_hold()
-    }
+        fn bounds_hold(&self) -> bool {
+            (**self).bounds_hold()
+        }
 
-    fn is_constant(&self, region: &Region) -> bool {
-        (**self).is_constant(region)
+        fn is_constant(&self, region: &Region) -> bool {
+            (**self).is_constant(region)
+        }
+    };
+}
+
+impl<I: Importance> Importance for &I {
+    forward!();
+
+    #[inline]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
+        (**self).values(origin, x, y, values);
     }
+}
+
+// Looks up one value at a time: a method for many, generic in their precision, is not in a vtable.
+impl Importance for &dyn Importance {
+    forward!();
 }

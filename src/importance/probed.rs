@@ -61,6 +61,22 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.integral(domain)
     }
 
+    fn local(&self, at: DVec2, value: f64) -> f64 {
+        self.importance.local(at, value)
+    }
+
+    fn detail(&self, at: DVec2) -> f64 {
+        self.importance.detail(at)
+    }
+
+    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        self.importance.settle(centre, moved, needed)
+    }
+
+    fn longest_settling(&self) -> f64 {
+        self.importance.longest_settling()
+    }
+
     fn bounds_hold(&self) -> bool {
         false
     }

@@ -126,6 +126,11 @@ impl StippleMap {
         (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
     }
 
+    /// The importance averaged at the scale of the points' spacing.
+    fn phase_at(&self, at: DVec2) -> f64 {
+        self.bilinear(&self.phase, at)
+    }
+
     /// The image's pixel under a point, the nearest one beyond the image.
     fn pixel_under(&self, at: DVec2) -> f64 {
         let x = (at.x as usize).min(self.width - 1);
@@ -215,8 +220,8 @@ impl Importance for StippleMap {
         self.acceptance.integral(domain)
     }
 
-    fn local(&self, at: DVec2) -> f64 {
-        self.bilinear(&self.phase, at)
+    fn local(&self, at: DVec2, _value: f64) -> f64 {
+        self.phase_at(at)
     }
 
     fn detail(&self, at: DVec2) -> f64 {
@@ -230,9 +235,9 @@ impl Importance for StippleMap {
         if allowed(moved) {
             return moved;
         }
-        let spacing = self.spacing(self.local(centre));
+        let spacing = self.spacing(self.phase_at(centre));
         let h = 0.5 * spacing;
-        let rise = |d: DVec2| self.local(centre + d) - self.local(centre - d);
+        let rise = |d: DVec2| self.phase_at(centre + d) - self.phase_at(centre - d);
         let gradient = DVec2::new(rise(DVec2::X * h), rise(DVec2::Y * h));
         let length = libm::sqrt(gradient.x * gradient.x + gradient.y * gradient.y);
         if length > 0.0 {

@@ -1,6 +1,6 @@
 //! The points of a field on a ground, and where relaxation moves them.
 
-use glam::DVec2;
+use glam::{DVec2, Vec2};
 
 use super::field::{Field, level_of, spacing};
 use super::ground::{Descend, Ground, Region};
@@ -74,7 +74,7 @@ impl Site {
     #[must_use]
     pub fn relaxed(&self, table: &Relaxation) -> DVec2 {
         let vector = table.vector(&self.classes, self.tau, self.detail);
-        self.centre + turned(vector.into(), self.rotation) * self.edge
+        self.centre + turned(Vec2::from(vector).as_dvec2(), self.rotation) * self.edge
     }
 }
 

@@ -47,7 +47,7 @@ pub(crate) fn tile_counts(level: u8) -> (u64, u64) {
 }
 
 /// 1/N_m.
-static RECIPROCALS: [f64; MAX_LEVEL + 1] = {
+pub(crate) static RECIPROCALS: [f64; MAX_LEVEL + 1] = {
     let mut reciprocals = [1.0; MAX_LEVEL + 1];
     let mut level = 0;
     while level <= MAX_LEVEL {

@@ -5,9 +5,10 @@
 use glam::DVec2;
 
 use super::batch::{Batch, tile_counts};
+use super::kin::Walk;
 use super::scalar::{Position, Scalar};
-use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
+use crate::placement::Placement;
 use crate::sampling::{Sampling, SamplingError};
 
 /// Candidates a chunk. A block of depth 2 fits, and the arrays stay in the first-level cache.
@@ -23,13 +24,13 @@ pub(crate) struct Chunk<S> {
     pub(crate) x: [S; CHUNK],
     pub(crate) y: [S; CHUNK],
     /// Which entries of the block they are, if `packed`; otherwise `first` and those after it.
-    entry: [u16; CHUNK],
+    pub(crate) entry: [u16; CHUNK],
     first: usize,
     packed: bool,
     /// 1 for the points of the set, 0 for the others.
     pub(crate) keep: [u8; CHUNK],
     /// The importance at each.
-    values: [f64; CHUNK],
+    pub(crate) values: [f64; CHUNK],
 }
 
 impl<S: Scalar> Chunk<S> {
@@ -47,14 +48,6 @@ impl<S: Scalar> Chunk<S> {
         }
     }
 
-    /// Sets candidate `i`, a point, and with it all of the chunk to be packed.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, i: usize, [x, y]: [S; 2], entry: usize) {
-        // A block has at most 37,829 entries.
-        (self.x[i], self.y[i], self.entry[i], self.keep[i]) = (x, y, entry as u16, 1);
-        self.packed = true;
-    }
-
     /// The entry of the block that candidate `i` is.
     #[inline(always)]
     pub(crate) fn entry(&self, i: usize) -> usize {
@@ -66,45 +59,61 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        sampling: &Sampling<'_, I>,
-        clip: &Clip,
-        to_caller: &ToCaller<S>,
+        walk: &Walk<'_, '_, I, S>,
         batch: &Batch,
         start: usize,
     ) -> Result<usize, SamplingError> {
-        let mut next = start;
-        self.len = 0;
-        while self.len < CHUNK && next < batch.end {
-            let (segment, end) = batch.segment::<S>(sampling.placement(), next, CHUNK - self.len);
-            let filled = self.len..self.len + (end - next);
-            segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
-            (self.len, next) = (filled.end, end);
-        }
-        (self.first, self.packed) = (start, false);
+        let sampling = walk.sampling;
+        let next = self.load(sampling.placement(), batch, start);
         if batch.inside {
             if batch.all_accepted {
                 self.keep[..self.len].fill(1);
             }
         } else {
-            self.mark_inside::<P>(sampling, clip, to_caller);
+            self.mark_inside::<I, P>(walk);
             if !batch.all_accepted {
                 self.pack();
             }
         }
         if !batch.all_accepted {
+            self.read_values(sampling);
             self.mark_accepted(sampling, batch)?;
         }
         Ok(next)
     }
 
+    /// Takes the fixed centres of the batch's entries from `start` on, as many as fit. Returns the next
+    /// entry.
+    #[inline(always)]
+    pub(crate) fn load(&mut self, placement: &Placement<'_>, batch: &Batch, start: usize) -> usize {
+        let mut next = start;
+        self.len = 0;
+        while self.len < CHUNK && next < batch.end {
+            let (segment, end) = batch.segment::<S>(placement, next, CHUNK - self.len);
+            let filled = self.len..self.len + (end - next);
+            segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
+            (self.len, next) = (filled.end, end);
+        }
+        (self.first, self.packed) = (start, false);
+        next
+    }
+
+    /// The importance at each candidate.
+    #[inline(always)]
+    pub(crate) fn read_values<I: Importance>(&mut self, sampling: &Sampling<'_, I>) {
+        let len = self.len;
+        let corner = sampling.placement().domain().min();
+        let values = &mut self.values[..len];
+        sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
+    }
+
     /// Marks what lies in the half-open domain, and in the clip's rectangle.
     #[inline(always)]
-    pub(crate) fn mark_inside<P: Position<Scalar = S>>(
+    pub(crate) fn mark_inside<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        sampling: &Sampling<'_, impl Importance>,
-        clip: &Clip,
-        to_caller: &ToCaller<S>,
+        walk: &Walk<'_, '_, I, S>,
     ) {
+        let Walk { sampling, clip, to_caller } = *walk;
         let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
         let zero = S::default();
         let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
@@ -138,17 +147,26 @@ impl<S: Scalar> Chunk<S> {
         (self.len, self.packed) = (kept, true);
     }
 
-    /// Marks those whose importance reaches their rank.
+    /// The same, and their values with them.
     #[inline(always)]
-    fn mark_accepted<I: Importance>(
+    pub(crate) fn pack_with_values(&mut self) {
+        self.pack();
+        for i in 0..self.len.min(CHUNK) {
+            // Never before `i`.
+            self.values[i] = self.values[usize::from(self.entry[i]) - self.first];
+        }
+    }
+
+    /// Marks those whose importance, in `values`, reaches their rank.
+    #[inline(always)]
+    pub(crate) fn mark_accepted<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
         batch: &Batch,
     ) -> Result<(), SamplingError> {
         let len = self.len;
         let corner = sampling.placement().domain().min();
-        let values = &mut self.values[..len];
-        sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
+        let values = &self.values[..len];
         // One comparison that is false for NaN, so that no broken promise passes.
         let most = if sampling.importance().bounds_hold() { batch.bound } else { f64::MAX };
         let sound = |value: f64| (value >= 0.0) & (value <= most);

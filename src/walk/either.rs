@@ -2,7 +2,7 @@
 
 use super::batch::Batch;
 use super::chunk::Chunk;
-use super::relaxed::RelaxedTraversal;
+use super::kin::Kin;
 use super::scalar::Position;
 use super::traverse::Traversal;
 use crate::clip::ToCaller;
@@ -13,8 +13,8 @@ use crate::sampling::{Sampling, SamplingError};
 #[expect(clippy::large_enum_variant, reason = "one value a walk, and nothing may be allocated")]
 #[derive(Clone, Debug)]
 pub(crate) enum AnyTraversal {
-    Fixed(Traversal),
-    Relaxed(RelaxedTraversal),
+    Fixed(Traversal<()>),
+    Relaxed(Traversal<Kin>),
 }
 
 impl AnyTraversal {
@@ -22,7 +22,7 @@ impl AnyTraversal {
     pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
         match sampling.relaxation() {
             None => Self::Fixed(Traversal::new(sampling)),
-            Some(_) => Self::Relaxed(RelaxedTraversal::new(sampling)),
+            Some(_) => Self::Relaxed(Traversal::new(sampling)),
         }
     }
 
@@ -32,10 +32,9 @@ impl AnyTraversal {
         &mut self,
         sampling: &Sampling<'_, I>,
     ) -> Result<bool, SamplingError> {
-        match (self, sampling.relaxation()) {
-            (Self::Fixed(traversal), _) => traversal.advance(sampling),
-            (Self::Relaxed(traversal), Some(relaxation)) => traversal.advance(sampling, relaxation),
-            (Self::Relaxed(_), None) => Ok(false),
+        match self {
+            Self::Fixed(traversal) => traversal.advance(sampling),
+            Self::Relaxed(traversal) => traversal.advance(sampling),
         }
     }
 
@@ -66,15 +65,9 @@ impl AnyTraversal {
         start: usize,
         chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
-        match (self, sampling.relaxation()) {
-            (Self::Relaxed(traversal), Some(relaxation)) => {
-                traversal.select::<I, P>(sampling, relaxation, to_caller, start, chunk)
-            }
-            (Self::Relaxed(traversal), None) => Ok(traversal.batch().end),
-            (Self::Fixed(traversal), _) => {
-                let (clip, batch) = (traversal.clip(), traversal.batch());
-                chunk.select::<I, P>(sampling, clip, to_caller, batch, start)
-            }
+        match self {
+            Self::Fixed(traversal) => traversal.select::<I, P>(sampling, to_caller, start, chunk),
+            Self::Relaxed(traversal) => traversal.select::<I, P>(sampling, to_caller, start, chunk),
         }
     }
 }

@@ -4,7 +4,9 @@ use glam::DVec2;
 
 use super::batch::{levels_below, tile_counts, tiles_at};
 use super::frame::{Frame, Segment};
+use super::kin::Kinship;
 use super::node::{ExactPoint, Node};
+use super::relaxed::margin;
 use crate::clip::Clip;
 use crate::domain::Region;
 use crate::importance::Importance;
@@ -13,8 +15,9 @@ use crate::tiling::subdivide::MAX_CHILDREN;
 
 /// A tile whose children are being visited.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Open {
+pub(crate) struct Open<K> {
     pub(crate) node: Node,
+    pub(crate) kinship: K,
     /// Bit `d`: the child with digit `d` is still to be visited.
     pub(crate) pending: u16,
     /// Bit `d`: the child's new descendants all lie in the clip.
@@ -27,10 +30,11 @@ pub(crate) struct Open {
     pub(crate) bounds: [f64; MAX_CHILDREN],
 }
 
-impl Open {
+impl<K: Kinship> Open<K> {
     /// What an unused slot holds.
     pub(crate) const CLOSED: Self = Self {
         node: Node::root(),
+        kinship: K::NONE,
         pending: 0,
         inside: 0,
         constant: 0,
@@ -47,11 +51,12 @@ impl Open {
         &mut self,
         sampling: &Sampling<'_, I>,
         clip: &Clip,
-        node: &Node,
+        (node, kinship): (&Node, &K),
         node_limit: u64,
         node_inside: bool,
     ) -> Result<(), SamplingError> {
-        (self.node, self.pending, self.inside, self.constant) = (*node, 0, 0, 0);
+        (self.node, self.kinship) = (*node, *kinship);
+        (self.pending, self.inside, self.constant) = (0, 0, 0);
         let placement = sampling.placement();
         let importance = sampling.importance();
         let block = placement.tables().block(node.kind);
@@ -62,12 +67,21 @@ impl Open {
         let corner = placement.domain().min();
         let levels = levels_below(node, node_limit);
         let radius = placement.reach(node.level + 1, levels.saturating_sub(1));
+        // Where points are moved, these are born below the children.
+        let wide = radius + margin::<K>(sampling, node.level + 2);
+        let size = placement.domain().size();
         let mut digits = [0u8; MAX_CHILDREN];
         let mut touching = 0;
         for digit in 0..children {
             (digits[touching], x[touching], y[touching]) = (digit as u8, x[digit], y[digit]);
             let centre = corner + DVec2::new(x[touching], y[touching]);
-            let touches = node_inside || clip.touches(&Region { centre, radius });
+            let touches = node_inside || clip.touches(&Region { centre, radius: wide });
+            if K::RELAXED {
+                // Importance is read at the nearest place of the domain, which is never farther from
+                // this one than the point from the centre.
+                x[touching] = x[touching].clamp(0.0, size.x);
+                y[touching] = y[touching].clamp(0.0, size.y);
+            }
             touching += usize::from(touches);
         }
         let mut bounds = [0.0; MAX_CHILDREN];
@@ -87,7 +101,8 @@ impl Open {
             let bit = 1 << digit;
             if limit > tiles_below.saturating_add(rank) {
                 self.pending |= bit;
-                self.inside |= if node_inside || clip.holds(&region) { bit } else { 0 };
+                let region_of_points = Region { radius: wide, ..region };
+                self.inside |= if node_inside || clip.holds(&region_of_points) { bit } else { 0 };
                 self.constant |= if importance.is_constant(&region) { bit } else { 0 };
             }
             (self.limits[digit], self.bounds[digit]) = (limit, *bound);

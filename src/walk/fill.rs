@@ -2,9 +2,11 @@
 //! test is needed.
 
 use super::chunk::Chunk;
-use super::either::AnyTraversal;
-use super::frame::Segment;
+use super::ground::Ground;
+use super::kin::{Kin, Kinship};
+use super::relaxed::StepFrame;
 use super::scalar::{Position, Scalar};
+use super::traverse::Traversal;
 use super::vectors::Vectors;
 use crate::clip::ToCaller;
 use crate::importance::Importance;
@@ -18,13 +20,16 @@ pub(crate) trait Output {
     fn room(&self) -> usize;
     /// Writes one position. `i` < room.
     fn set(&mut self, i: usize, position: Self::Position);
-    /// Writes a run of candidates from `i` on; `i` + their number ≤ room.
-    fn write(
+    /// Writes a run of `len` positions from `i` on, given relative to the domain's least corner;
+    /// `i` + `len` ≤ room.
+    fn write<S: Scalar>(
         &mut self,
         i: usize,
-        segment: &Segment<'_, <Self::Position as Position>::Scalar>,
-        to_caller: &ToCaller<<Self::Position as Position>::Scalar>,
-    );
+        len: usize,
+        positions: impl Iterator<Item = [S; 2]>,
+        to_caller: &ToCaller<S>,
+    ) where
+        Self::Position: Position<Scalar = S>;
 }
 
 impl<P: Position> Output for &mut [P] {
@@ -40,17 +45,24 @@ impl<P: Position> Output for &mut [P] {
     }
 
     #[inline(always)]
-    fn write(
+    fn write<S: Scalar>(
         &mut self,
         i: usize,
-        segment: &Segment<'_, P::Scalar>,
-        to_caller: &ToCaller<P::Scalar>,
-    ) {
-        let slots = &mut self[i..i + segment.len()];
+        len: usize,
+        positions: impl Iterator<Item = [S; 2]>,
+        to_caller: &ToCaller<S>,
+    ) where
+        P: Position<Scalar = S>,
+    {
+        let slots = self[i..i + len].iter_mut().zip(positions);
         if to_caller.is_identity() {
-            segment.write_positions(slots, P::from_xy);
+            for (slot, [x, y]) in slots {
+                *slot = P::from_xy(x, y);
+            }
         } else {
-            segment.write_positions(slots, |x, y| to_caller.place(x, y));
+            for (slot, [x, y]) in slots {
+                *slot = to_caller.place(x, y);
+            }
         }
     }
 }
@@ -74,18 +86,24 @@ impl<P: Position> Output for Columns<'_, P> {
     }
 
     #[inline(always)]
-    fn write(
+    fn write<S: Scalar>(
         &mut self,
         i: usize,
-        segment: &Segment<'_, P::Scalar>,
-        to_caller: &ToCaller<P::Scalar>,
-    ) {
-        let run = i..i + segment.len();
-        let (x, y) = (&mut self.x[run.clone()], &mut self.y[run]);
-        segment.write_columns(x, y);
-        if !to_caller.is_identity() {
-            for (x, y) in x.iter_mut().zip(y) {
-                [*x, *y] = to_caller.place::<P>(*x, *y).xy();
+        len: usize,
+        positions: impl Iterator<Item = [S; 2]>,
+        to_caller: &ToCaller<S>,
+    ) where
+        P: Position<Scalar = S>,
+    {
+        let (x, y) = (&mut self.x[i..i + len], &mut self.y[i..i + len]);
+        let columns = x.iter_mut().zip(y).zip(positions);
+        if to_caller.is_identity() {
+            for ((to_x, to_y), [x, y]) in columns {
+                (*to_x, *to_y) = (x, y);
+            }
+        } else {
+            for ((to_x, to_y), [x, y]) in columns {
+                [*to_x, *to_y] = to_caller.place::<P>(x, y).xy();
             }
         }
     }
@@ -94,17 +112,50 @@ impl<P: Position> Output for Columns<'_, P> {
 /// Writes the sampling's points to `output` until either ends.
 pub(crate) fn fill<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
+    output: O,
+) -> Result<Filled, SamplingError> {
+    match sampling.relaxation() {
+        None => fill_from(sampling, Traversal::<()>::new(sampling), None, output),
+        Some(_) => fill_relaxed(sampling, output),
+    }
+}
+
+// A function of its own for the sake of its stack: `Ground` is 87 KB.
+#[inline(never)]
+fn fill_relaxed<I: Importance, O: Output>(
+    sampling: &Sampling<'_, I>,
+    output: O,
+) -> Result<Filled, SamplingError> {
+    let traversal = Traversal::<Kin>::new(sampling);
+    match Ground::of(sampling) {
+        Some(mut ground) => fill_from(sampling, traversal, Some(&mut ground), output),
+        None => fill_from(sampling, traversal, None, output),
+    }
+}
+
+fn fill_from<K: Kinship, I: Importance, O: Output>(
+    sampling: &Sampling<'_, I>,
+    mut traversal: Traversal<K>,
+    mut ground: Option<&mut Ground<'_>>,
     mut output: O,
 ) -> Result<Filled, SamplingError> {
     let vectors = Vectors::detect();
     let to_caller = ToCaller::new(&sampling.placement().domain())?;
-    let mut traversal = AnyTraversal::new(sampling);
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {
+        let steps = match (&mut ground, traversal.kinship().kin()) {
+            (Some(ground), Some(kin)) => {
+                ground.steps(sampling.placement(), traversal.batch(), kin)
+            }
+            _ => None,
+        };
         let complete = vectors.run(
             #[inline(always)]
-            || emit(sampling, &traversal, &to_caller, &mut chunk, (&mut output, &mut written)),
+            || {
+                let output = (&mut output, &mut written);
+                emit(sampling, &traversal, steps, &to_caller, &mut chunk, output)
+            },
         )?;
         if !complete {
             return Ok(Filled { written, complete });
@@ -116,26 +167,49 @@ pub(crate) fn fill<I: Importance, O: Output>(
 /// Writes the points of the current batch from index `written` on; `false` if there was no room for
 /// all of them.
 #[inline(always)]
-fn emit<I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
+fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
     sampling: &Sampling<'_, I>,
-    traversal: &AnyTraversal,
+    traversal: &Traversal<K>,
+    steps: Option<(&[[f32; 2]], StepFrame<S>)>,
     to_caller: &ToCaller<S>,
     chunk: &mut Chunk<S>,
     (output, written): (&mut O, &mut usize),
 ) -> Result<bool, SamplingError> {
     let batch = traversal.batch();
     let mut next = batch.start;
-    if batch.inside && batch.all_accepted && batch.end - next <= output.room() - *written {
+    let room = output.room() - *written;
+    // Nothing to test: straight from the tables into the buffer.
+    let all = batch.inside && batch.all_accepted && batch.end - next <= room;
+    if all && (!K::RELAXED || steps.is_some()) {
         while next < batch.end {
             let (segment, end) = batch.segment(sampling.placement(), next, usize::MAX);
-            output.write(*written, &segment, to_caller);
+            let centres = segment.positions();
+            match steps {
+                None => output.write(*written, end - next, centres, to_caller),
+                Some((vectors, frame)) => {
+                    let vectors = &vectors[next - batch.start..];
+                    let moved = centres.zip(vectors).map(move |([x, y], vector)| {
+                        let step = frame.step(*vector);
+                        [x + step[0], y + step[1]]
+                    });
+                    output.write(*written, end - next, moved, to_caller);
+                }
+            }
             *written += end - next;
             next = end;
         }
         return Ok(true);
     }
     while next < batch.end {
-        next = traversal.select::<I, O::Position>(sampling, to_caller, next, chunk)?;
+        next = match steps {
+            Some((vectors, frame)) => {
+                let vectors = &vectors[next - batch.start..];
+                traversal.select_moved::<I, O::Position>(
+                    sampling, to_caller, next, (vectors, frame), chunk,
+                )
+            }
+            None => traversal.select::<I, O::Position>(sampling, to_caller, next, chunk)?,
+        };
         if !append(chunk, output, written, to_caller) {
             return Ok(false);
         }

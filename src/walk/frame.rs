@@ -82,21 +82,13 @@ impl<'t, S: Scalar> Segment<'t, S> {
     /// The positions, relative to the domain's least corner. A plain loop over four arrays of one
     /// length, which compilers turn into vector instructions.
     #[inline(always)]
-    fn positions(&self) -> impl Iterator<Item = [S; 2]> {
+    pub(crate) fn positions(&self) -> impl Iterator<Item = [S; 2]> {
         let Self { frame, centre, offsets: Offsets { u, v, p, q } } = *self;
         let field = |bytes: [u8; 2]| i32::from(i16::from_le_bytes(bytes));
         u.iter().zip(v).zip(p).zip(q).map(move |(((u, v), p), q)| {
             let offset = ExactPoint { u: field(*u), v: field(*v), p: field(*p), q: field(*q) };
             frame.position(centre.plus(offset))
         })
-    }
-
-    /// Writes the positions as points made by `place` from x and y.
-    #[inline(always)]
-    pub(crate) fn write_positions<P>(&self, slots: &mut [P], place: impl Fn(S, S) -> P) {
-        for (slot, [x, y]) in slots.iter_mut().zip(self.positions()) {
-            *slot = place(x, y);
-        }
     }
 
     /// Writes the positions, one array a coordinate.

@@ -1,50 +1,100 @@
 //! Kinship: what a relaxed point must know of its ancestors.
 
-use super::frame::Frame;
-use super::node::{ExactPoint, Node};
-use super::scalar::Scalar;
-use crate::bake::class::{Classes, class_count};
-use crate::placement::Placement;
+use super::batch::Batch;
+use super::chunk::Chunk;
+use super::node::Node;
+use super::scalar::Position;
+use crate::bake::class::{Classes, MAX_GENERATIONS, class_count, parts};
+use crate::clip::{Clip, ToCaller};
+use crate::importance::Importance;
+use crate::sampling::{Sampling, SamplingError};
 use crate::tables::Tables;
 use crate::tiling::{FCode, TileType};
 
-/// A tile of the walk with its kinship.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Kin {
-    pub(crate) node: Node,
-    /// The tile's classes.
-    classes: Classes,
-    /// Rotations of its parent and grandparent.
-    ancestors: [u8; 2],
-    /// The same of the tile at which this tile's centre was born.
-    birth: Birth,
+/// What a walk carries beside a tile: nothing for fixed centres, its [`Kin`] for relaxed points.
+pub(crate) trait Kinship: Copy + core::fmt::Debug {
+    /// Whether points are moved.
+    const RELAXED: bool;
+    /// What an unused slot holds.
+    const NONE: Self;
+    /// Of a tile of the frontier.
+    fn frontier(tables: &Tables<'_>, node: &Node) -> Self;
+    /// Of the child with `digit` of `parent`, whose kinship this is.
+    fn child(&self, parent: &Node, digit: usize, child: &Node) -> Self;
+    /// The kin, where points are moved.
+    fn kin(&self) -> Option<&Kin>;
+    /// Takes entries of a batch of this kinship from `start` on into a chunk, as many as fit, and marks
+    /// the points among them. Returns the next entry.
+    fn select<I: Importance, P: Position>(
+        &self,
+        walk: &Walk<'_, '_, I, P::Scalar>,
+        batch: &Batch,
+        start: usize,
+        chunk: &mut Chunk<P::Scalar>,
+    ) -> Result<usize, SamplingError>;
 }
 
-/// A tile at the level at which its centre was born, but not before the frontier.
-#[derive(Clone, Copy, Debug)]
-struct Birth {
-    level: u8,
-    /// Its centre in edges of that level. A point is always computed from here, so that its bits do
-    /// not depend on the level at which it is met.
-    centre: ExactPoint,
-    kind: TileType,
-    /// Its rotation, its parent's and its grandparent's.
-    rotations: [u8; 3],
-    classes: Classes,
+/// What does not change during a walk.
+pub(crate) struct Walk<'w, 'a, I, S> {
+    pub(crate) sampling: &'w Sampling<'a, I>,
+    pub(crate) clip: &'w Clip,
+    pub(crate) to_caller: &'w ToCaller<S>,
 }
 
-/// Where the vector of a point is found: its classes at its own level, and the rotation of the frame
-/// in which the vector is given, its grandparent's.
-pub(crate) struct Relation<C> {
-    /// The class over a number of generations.
-    pub(crate) class: C,
-    /// In units of 30°.
-    pub(crate) rotation: u8,
+impl Kinship for () {
+    const RELAXED: bool = false;
+    const NONE: Self = ();
+
+    #[inline(always)]
+    fn frontier(_: &Tables<'_>, _: &Node) -> Self {}
+
+    #[inline(always)]
+    fn child(&self, _: &Node, _: usize, _: &Node) -> Self {}
+
+    #[inline(always)]
+    fn kin(&self) -> Option<&Kin> {
+        None
+    }
+
+    #[inline(always)]
+    fn select<I: Importance, P: Position>(
+        &self,
+        walk: &Walk<'_, '_, I, P::Scalar>,
+        batch: &Batch,
+        start: usize,
+        chunk: &mut Chunk<P::Scalar>,
+    ) -> Result<usize, SamplingError> {
+        chunk.select::<I, P>(walk, batch, start)
+    }
 }
 
 impl Kin {
-    /// A frontier tile: its ancestors follow from its rank. Its centre counts as born here.
-    pub(crate) fn frontier(tables: &Tables<'_>, node: &Node) -> Self {
+    /// How the parent is turned, in units of 30°.
+    pub(crate) fn parent_rotation(&self) -> u8 {
+        self.ancestors[0]
+    }
+
+    /// The parent's type and the tile's own digit.
+    pub(crate) fn parent(&self) -> Option<(TileType, u8)> {
+        let parts = parts(1, self.classes.over(1))?;
+        Some((parts.ancestor, parts.oldest_first[0]))
+    }
+}
+
+/// A tile's classes, and how its parent and its grandparent are turned.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kin {
+    classes: Classes,
+    /// In units of 30°.
+    ancestors: [u8; 2],
+}
+
+impl Kinship for Kin {
+    const RELAXED: bool = true;
+    const NONE: Self = Self { classes: Classes::root(TileType::A), ancestors: [0; 2] };
+
+    /// The ancestors of a frontier tile follow from its rank.
+    fn frontier(tables: &Tables<'_>, node: &Node) -> Self {
         let (mut kind, mut rotation, mut ancestors) = (TileType::A, 0, [0; 2]);
         let mut classes = Classes::root(kind);
         // The frontier's levels and ranks exist.
@@ -56,86 +106,131 @@ impl Kin {
                 classes = classes.child(digit, child);
             }
         }
-        let rotations = [node.rotation, ancestors[0], ancestors[1]];
-        let birth = Birth { level: node.level, centre: node.centre, kind, rotations, classes };
-        Self { node: *node, classes, ancestors, birth }
+        Self { classes, ancestors }
     }
 
-    /// As [`Node::child`].
-    pub(crate) fn child(
+    #[inline(always)]
+    fn child(&self, parent: &Node, digit: usize, child: &Node) -> Self {
+        Self {
+            classes: self.classes.child(digit as u8, child.kind),
+            ancestors: [parent.rotation, self.ancestors[0]],
+        }
+    }
+
+    #[inline(always)]
+    fn kin(&self) -> Option<&Kin> {
+        Some(self)
+    }
+
+    #[inline(always)]
+    fn select<I: Importance, P: Position>(
         &self,
-        tables: &Tables<'_>,
-        digit: usize,
-        tiles: u64,
-        tiles_before: u64,
-    ) -> Option<Self> {
-        let node = self.node.child(tables, digit, tiles, tiles_before)?;
-        let classes = self.classes.child(digit as u8, node.kind);
-        let ancestors = [self.node.rotation, self.ancestors[0]];
-        let birth = if digit == 0 {
-            self.birth
-        } else {
-            let rotations = [node.rotation, ancestors[0], ancestors[1]];
-            let (level, centre) = (node.level, node.centre);
-            Birth { level, centre, kind: node.kind, rotations, classes }
-        };
-        Some(Self { node, classes, ancestors, birth })
-    }
-
-    /// The level at which the node's centre was born, but not before the frontier.
-    pub(crate) fn born(&self) -> u8 {
-        self.birth.level
-    }
-
-    /// The node's own centre, relative to the domain's least corner.
-    pub(crate) fn own_centre<S: Scalar>(&self, placement: &Placement<'_>) -> [S; 2] {
-        let half_edge = placement.half_edge(self.birth.level);
-        Frame::new(half_edge, placement.origin(), 0).position(self.birth.centre)
-    }
-
-    /// The relation at `level` of the node's own centre, born at or above that level.
-    pub(crate) fn of_own_centre(
-        &self,
-        tables: &Tables<'_>,
-        level: u8,
-    ) -> Relation<impl Fn(u32) -> u32> {
-        let birth = self.birth;
-        let zeros = level.saturating_sub(birth.level);
-        let rotation = if zeros < 2 {
-            birth.rotations[usize::from(2 - zeros)]
-        } else {
-            // The grandparent is on the chain of centre children.
-            let mut tile = (birth.kind, birth.rotations[0]);
-            for _ in 2..zeros {
-                let (kind, turn) = tables.child_kinds(tile.0)[0];
-                tile = (kind, (tile.1 + turn) % 12);
+        walk: &Walk<'_, '_, I, P::Scalar>,
+        batch: &Batch,
+        start: usize,
+        chunk: &mut Chunk<P::Scalar>,
+    ) -> Result<usize, SamplingError> {
+        match walk.sampling.relaxation() {
+            Some(relaxation) => {
+                chunk.select_relaxed::<I, P>(walk, relaxation, (batch, self), start)
             }
-            tile.1
+            // Kin is asked for only where there are offsets.
+            None => Ok(batch.end),
+        }
+    }
+}
+
+/// The kinship that entries of one block have at one level: the classes from their rank coefficients,
+/// and the ancestors in whose frames vectors are given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lineage {
+    /// For each number of generations: class = own + A·count − B·before.
+    own: [u32; MAX_GENERATIONS + 1],
+    count: [u32; MAX_GENERATIONS + 1],
+    before: [u32; MAX_GENERATIONS + 1],
+    /// The grandparent's rotation relative to the great-grandparent, and the latter's own, in units
+    /// of 30°.
+    pub(crate) turn: u8,
+    pub(crate) rotation: u8,
+}
+
+impl Lineage {
+    /// Of the entries of `node`'s block, `below` levels below it: 1 … 3. Three levels below, the turn and
+    /// the class over two generations are the entries' own: see
+    /// [`thirds`](crate::tables::BlockTable::thirds).
+    ///
+    /// Classes obey the recurrence of the ranks, n_G in place of N_m, so that an entry's coefficients
+    /// give its class too: class_G = class_{G−j}(node) + A·n_{G−j} − B·n_{G−j−1}, j levels down.
+    pub(crate) fn of_entries(kin: &Kin, node: &Node, below: usize) -> Self {
+        let number = |g: usize| class_count(g).unwrap_or(0);
+        // Slots have at least 2 generations; what is given for fewer is never asked for.
+        let older = |g: usize| g.saturating_sub(below);
+        let [parent, grandparent] = kin.ancestors;
+        let (grand, great) = match below {
+            3.. => (node.rotation, node.rotation),
+            2 => (node.rotation, parent),
+            _ => (parent, grandparent),
         };
-        // A digit 0 adds nothing to a class; past the birth, the oldest ancestor is an `a` tile.
-        let class = move |generations: u32| match generations.checked_sub(zeros.into()) {
-            Some(rest) => birth.classes.over(rest as usize),
+        Self {
+            own: core::array::from_fn(|g| kin.classes.over(older(g))),
+            count: core::array::from_fn(|g| number(older(g))),
+            before: core::array::from_fn(|g| if older(g) == 0 { 1 } else { number(older(g) - 1) }),
+            turn: (grand + 12 - great) % 12,
+            rotation: great,
+        }
+    }
+
+    /// Of the entries of a block of the type with this index, three levels below its tile, for classes
+    /// over three generations: the type is all there is to know.
+    pub(crate) fn of_block(kind: usize) -> Self {
+        let [own, count] = [kind as u32, class_count(0).unwrap_or(0)];
+        Self {
+            own: [own; MAX_GENERATIONS + 1],
+            count: [count; MAX_GENERATIONS + 1],
+            before: [1; MAX_GENERATIONS + 1],
+            turn: 0,
+            rotation: 0,
+        }
+    }
+
+    /// Of the centre of `node`, `below` levels below it: the end of a chain of centre children.
+    pub(crate) fn of_centre(tables: &Tables<'_>, kin: &Kin, node: &Node, below: usize) -> Self {
+        // How the tile is turned that is `down` levels below the node, or above it.
+        let rotation = |down: isize| match down {
+            ..=-2 => kin.ancestors[1],
+            -1 => kin.ancestors[0],
+            _ => {
+                let mut tile = (node.kind, node.rotation);
+                for _ in 0..down {
+                    let (kind, turn) = tables.child_kinds(tile.0)[0];
+                    tile = (kind, (tile.1 + turn) % 12);
+                }
+                tile.1
+            }
+        };
+        let below = below as isize;
+        let (grand, great) = (rotation(below - 2), rotation(below - 3));
+        // A digit 0 adds nothing to a class; past the node, the oldest ancestor is an `a` tile.
+        let own = |g: usize| match g.checked_sub(below as usize) {
+            Some(rest) => kin.classes.over(rest),
             None => TileType::A as u32,
         };
-        Relation { class, rotation }
+        Self {
+            own: core::array::from_fn(own),
+            count: [0; MAX_GENERATIONS + 1],
+            before: [0; MAX_GENERATIONS + 1],
+            turn: (grand + 12 - great) % 12,
+            rotation: great,
+        }
     }
 
-    /// The relation of another entry of the node's block, with rank coefficients (a, b), at `level`,
-    /// one or two levels below the node.
-    ///
-    /// Classes obey the recurrence of the ranks, n_G in place of N_m, so the entry's coefficients give
-    /// its class too: class_G = class_{G−j}(node) + A·n_{G−j} − B·n_{G−j−1}, j levels down.
-    pub(crate) fn of_entry(&self, (a, b): (u16, u16), level: u8) -> Relation<impl Fn(u32) -> u32> {
-        let below = u32::from(level.saturating_sub(self.node.level));
-        let classes = self.classes;
-        let class = move |generations: u32| {
-            // Layers have at least 2 generations, and `below` is 1 or 2.
-            let older = generations.saturating_sub(below) as usize;
-            let count = |g: usize| class_count(g).unwrap_or(0);
-            let before = if older == 0 { 1 } else { count(older - 1) };
-            classes.over(older) + u32::from(a) * count(older) - u32::from(b) * before
-        };
-        let rotation = if below >= 2 { self.node.rotation } else { self.ancestors[0] };
-        Relation { class, rotation }
+    /// The class over `generations` of an entry with rank coefficients (a, b).
+    #[inline(always)]
+    pub(crate) fn class(&self, generations: usize, (a, b): (u16, u16)) -> u32 {
+        let g = generations.min(MAX_GENERATIONS);
+        // No class leaves 32 bits; entries of other levels wrap to some class or none.
+        self.own[g]
+            .wrapping_add(u32::from(a).wrapping_mul(self.count[g]))
+            .wrapping_sub(u32::from(b).wrapping_mul(self.before[g]))
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod either;
 pub(crate) mod expand;
 pub(crate) mod fill;
 pub(crate) mod frame;
+pub(crate) mod ground;
 pub(crate) mod kin;
 pub(crate) mod node;
 pub(crate) mod relaxed;

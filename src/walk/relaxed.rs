@@ -1,24 +1,20 @@
-//! The walk in relaxed mode: the same tiles, ranks and acceptance, and then a step aside.
+//! Relaxed points: the same tiles, ranks and acceptance, and then a step aside.
 //!
 //! Every point is accepted or not at its fixed centre, with the importance of the nearest place in the
 //! domain, and then moved by the vector of its classes and of the local density phase. What lies in
-//! the domain is decided by where it ends up. So subtrees are visited whose points can move in: a
-//! vector is at most [`longest`](crate::RelaxationTable) edges of the point's level long, which is at
-//! least one level below the subtree's tile, but for the tile's own centre, whose level can be as
-//! early as its birth.
+//! the domain is decided by where it ends up; so the walk's regions are widened by [`margin`].
+
+use core::ops::Range;
 
 use glam::DVec2;
 
-use super::batch::{Batch, count_below, levels_below, tile_counts, work_below};
+use super::batch::{Batch, RECIPROCALS, tile_counts};
 use super::chunk::{CHUNK, Chunk};
-use super::kin::{Kin, Relation};
+use super::kin::{Kin, Kinship, Lineage, Walk};
 use super::scalar::{Position, Scalar};
-use super::share::Share;
-use crate::clip::{Clip, ToCaller};
-use crate::domain::Region;
 use crate::importance::Importance;
 use crate::placement::{FRONTIER_LEVEL, Placement};
-use crate::relaxed::RelaxationTable;
+use crate::relaxed::{RUN, RelaxationTable};
 use crate::sampling::{Sampling, SamplingError};
 use crate::tiling::cyclotomic::SQRT_3;
 use crate::tiling::{MAX_LEVEL, TileCounts};
@@ -27,262 +23,302 @@ use crate::tiling::{MAX_LEVEL, TileCounts};
 /// expected in a domain, and the tiles from which they could move in would be very many.
 pub(crate) const FIRST_RELAXED_LEVEL: u8 = FRONTIER_LEVEL + 2;
 
-/// Waiting nodes, as for the fixed walk.
-const STACK: usize = 13 * (MAX_LEVEL - FRONTIER_LEVEL as usize) + 24;
-
 /// δ = 7 + 4√3.
-const DELTA: f64 = 7.0 + 4.0 * SQRT_3;
+pub(crate) const DELTA: f64 = 7.0 + 4.0 * SQRT_3;
 
-/// A traversal in progress.
-#[derive(Clone, Debug)]
-pub(crate) struct RelaxedTraversal {
-    stack: [Option<Kin>; STACK],
-    waiting: usize,
-    clip: Clip,
-    /// The part of the walk that is taken; `None` for all of it.
-    share: Option<Share>,
-    tiles_left: u64,
-    /// The tile being visited; its own centre is entry 0 of the batch.
-    kin: Option<Kin>,
-    batch: Batch,
-}
-
-/// The level L with N_{L−1} < T ≤ N_L, at least 1, and N_{L−1}.
-fn level_of(threshold: f64) -> (u8, f64) {
+/// The level L with N_{L−1} < T ≤ N_L, at least 1.
+pub(crate) fn level_of(threshold: f64) -> u8 {
     let counts = TileCounts::HEXAGON.all();
-    let level = counts.partition_point(|tiles| (*tiles as f64) < threshold).max(1);
-    (level as u8, counts[level - 1] as f64)
+    counts.partition_point(|tiles| (*tiles as f64) < threshold).max(1) as u8
 }
 
-impl RelaxedTraversal {
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
-        let placement = sampling.placement();
-        let mut traversal = Self {
-            stack: [None; STACK],
-            waiting: 0,
-            clip: sampling.clip(),
-            share: sampling.share(),
-            tiles_left: sampling.limits().tiles,
-            kin: None,
-            batch: Batch::EMPTY,
+/// How far, in units, points born at `level` or later may be moved: a vector is at most
+/// [`longest`](RelaxationTable::longest) edges of the point's level long, which is not above the
+/// level of its birth.
+#[inline(always)]
+pub(crate) fn margin<K: Kinship>(sampling: &Sampling<'_, impl Importance>, level: u8) -> f64 {
+    if !K::RELAXED {
+        return 0.0;
+    }
+    let level = level.clamp(FIRST_RELAXED_LEVEL, MAX_LEVEL as u8);
+    let longest = sampling.relaxation().map_or(0.0, RelaxationTable::longest);
+    2.0 * sampling.placement().half_edge(level).length() * longest
+        + sampling.importance().longest_settling()
+}
+
+/// Whether points with thresholds up to `threshold` are at most so many levels below a tile of `level`.
+#[inline(always)]
+pub(crate) fn is_within(level: u8, below: u8, threshold: f64) -> bool {
+    let counts = TileCounts::HEXAGON.all();
+    counts.get(usize::from(level + below)).is_none_or(|tiles| threshold <= *tiles as f64)
+}
+
+/// A turn by a multiple of 30°: cosine and sine.
+#[derive(Clone, Copy)]
+pub(crate) struct Turn([f32; 2]);
+
+impl Turn {
+    /// By `turn`·30°, `turn` below 12.
+    #[inline(always)]
+    pub(crate) fn new(turn: u8) -> Self {
+        const H: f32 = (0.5 * SQRT_3) as f32;
+        const COSINES: [f32; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
+        const TURNS: [Turn; 16] = {
+            let mut turns = [Turn([1.0, 0.0]); 16];
+            let mut k = 0;
+            while k < 12 {
+                turns[k] = Turn([COSINES[k], COSINES[(k + 9) % 12]]);
+                k += 1;
+            }
+            turns
         };
-        for node in placement.frontier().rev() {
-            traversal.push(Kin::frontier(placement.tables(), node));
-        }
-        traversal
+        TURNS[usize::from(turn % 16)]
     }
 
-    fn push(&mut self, kin: Kin) {
-        // Never full: see STACK.
-        if let Some(slot) = self.stack.get_mut(self.waiting) {
-            *slot = Some(kin);
-            self.waiting += 1;
-        }
+    /// The vector turned.
+    #[inline(always)]
+    pub(crate) fn turned(self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let [c, s] = self.0;
+        [c * x + -s * y, s * x + c * y]
+    }
+}
+
+/// The frame in which steps are given: an edge of the point's level, turned as its great-grandparent.
+#[derive(Clone, Copy)]
+pub(crate) struct StepFrame<S>([S; 3]);
+
+impl<S: Scalar> StepFrame<S> {
+    pub(crate) fn new(placement: &Placement<'_>, level: u8, rotation: u8) -> Self {
+        let edge = placement.turned_edge(level.min(MAX_LEVEL as u8), rotation);
+        Self([edge.x, edge.y, -edge.y].map(S::from_f64))
     }
 
-    fn pop(&mut self) -> Option<Kin> {
-        self.waiting = self.waiting.checked_sub(1)?;
-        self.stack[self.waiting]
+    /// A step in units.
+    #[inline(always)]
+    pub(crate) fn step(&self, [x, y]: [f32; 2]) -> [S; 2] {
+        let [c, s, minus_s] = self.0;
+        let [x, y] = [x, y].map(|v| S::from_f64(f64::from(v)));
+        [c * x + minus_s * y, s * x + c * y]
     }
+}
 
-    /// The work that a walk by parts has passed.
-    pub(crate) fn passed(&self) -> u64 {
-        self.share.map_or(0, |share| share.passed())
-    }
+/// The domain's least corner and its greatest place: where a border point that moves in finds its
+/// importance.
+fn inner_corners(placement: &Placement<'_>) -> (DVec2, DVec2) {
+    let domain = placement.domain();
+    (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)))
+}
 
-    /// The current batch of candidates.
-    pub(crate) fn batch(&self) -> &Batch {
-        &self.batch
-    }
+/// A chunk's points on their way.
+struct Mover<'w, 'a, I> {
+    sampling: &'w Sampling<'a, I>,
+    relaxation: &'w RelaxationTable<'a>,
+    batch: &'w Batch,
+    kin: &'w Kin,
+    /// Where importance is read.
+    low: DVec2,
+    high: DVec2,
+}
 
-    /// Moves to the next batch of candidates; `false` at the end.
-    pub(crate) fn advance<I: Importance>(
+impl<S: Scalar> Chunk<S> {
+    /// As [`select`](Self::select), for relaxed points: takes the batch's entries from `start` on, as
+    /// many as fit, and keeps the points among them, where they are moved to.
+    #[inline(always)]
+    pub(crate) fn select_relaxed<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        sampling: &Sampling<'_, I>,
+        walk: &Walk<'_, '_, I, S>,
         relaxation: &RelaxationTable<'_>,
-    ) -> Result<bool, SamplingError> {
-        let placement = sampling.placement();
-        let domain = placement.domain();
-        let tables = placement.tables();
-        while let Some(kin) = self.pop() {
-            self.tiles_left = self
-                .tiles_left
-                .checked_sub(1)
-                .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
-            let node = kin.node;
-            let centre = domain.min() + placement.centre(&node);
-            let region = Region { centre, radius: placement.reach(node.level, usize::MAX) };
-            // How far points born in the subtree move, and the node's own centre.
-            let step = |level: u8| {
-                let level = level.max(FIRST_RELAXED_LEVEL).min(MAX_LEVEL as u8);
-                2.0 * placement.half_edge(level).length() * relaxation.longest()
-                    + sampling.importance().longest_settling()
-            };
-            let wide = Region { radius: region.radius + step(node.level + 1), ..region };
-            let own =
-                Region { radius: placement.reach(node.level, 0) + step(kin.born()), ..region };
-            let subtree_reaches = self.clip.touches(&wide);
-            if !subtree_reaches && !self.clip.touches(&own) {
-                continue;
-            }
-            // The nearest place of the domain is never farther from the clamped centre than the point
-            // itself from the centre.
-            let nearest = region.centre.clamp(domain.min(), domain.max());
-            let here = Region { centre: nearest, ..region };
-            let bound = sampling.importance().upper_bound(&here);
-            let limit = sampling.rank_limit_of_bound(bound, &here)?;
-            if limit <= node.rank {
-                continue;
-            }
-            let (level, _) = level_of(sampling.scale().threshold(bound));
-            let block = tables.block(node.kind);
-            self.kin = Some(kin);
-            self.batch =
-                Batch { node, start: 0, end: 1, inside: false, all_accepted: false, bound };
-            // Tiles that wait below this one on the stack tell a piece's depth: all of its own
-            // descendants are stacked above them.
-            let depth = self.waiting;
-            let mut share = self.share.as_mut().filter(|share| !share.is_in_piece(depth + 1));
-            if !subtree_reaches {
-                if share.is_none_or(|share| share.take(1, depth)) {
-                    return Ok(true);
-                }
-                continue;
-            }
-            if let Some(part) = &mut share {
-                part.leave_piece();
-                let work = work_below(&node, limit);
-                if part.is_piece(work) {
-                    if !part.take(work, depth) {
-                        continue;
-                    }
-                    share = None;
-                }
-            }
-            let levels = levels_below(&node, limit);
-            if level <= node.level + 2 && levels <= usize::from(tables.depth()) {
-                self.batch.inside = self.clip.holds(&wide) && self.clip.holds(&own);
-                self.batch.end = count_below(&node, block, levels, limit);
-                let work = self.batch.end as u64;
-                if share.is_none_or(|share| share.take(work, depth)) {
-                    return Ok(true);
-                }
-                continue;
-            }
-            let (tiles, before) = tile_counts(node.level);
-            for digit in (0..tables.child_kinds(node.kind).len()).rev() {
-                if let Some(child) = kin.child(tables, digit, tiles, before) {
-                    self.push(child);
-                }
-            }
-        }
-        Ok(false)
-    }
-
-    /// Fills `chunk` with the points among the entries from `start` on, where they are moved to, as
-    /// many as fit. Returns the next entry.
-    pub(crate) fn select<I: Importance, P: Position>(
-        &self,
-        sampling: &Sampling<'_, I>,
-        relaxation: &RelaxationTable<'_>,
-        to_caller: &ToCaller<P::Scalar>,
+        (batch, kin): (&Batch, &Kin),
         start: usize,
-        chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
-        let placement = sampling.placement();
-        let domain = placement.domain();
-        // Where a border point that moves in finds its importance.
-        let (low, high) = (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)));
-        let Some(kin) = &self.kin else { return Ok(self.batch.end) };
-        let next = self.fill_chunk(kin, placement, start, chunk);
-        let mut kept = 0;
-        for k in 0..chunk.len {
-            let (x, y, entry) = (chunk.x[k], chunk.y[k], start + k);
-            let centre = domain.min() + DVec2::new(x.to_f64(), y.to_f64());
-            let at = centre.clamp(low, high);
-            let value = sampling.importance().value(at);
-            if !(value >= 0.0 && value <= self.batch.bound) {
-                return Err(SamplingError::InvalidValue { at, value, bound: self.batch.bound });
+        let sampling = walk.sampling;
+        let next = self.load(sampling.placement(), batch, start);
+        let (low, high) = inner_corners(sampling.placement());
+        let mover = Mover { sampling, relaxation, batch, kin, low, high };
+        if batch.inside {
+            self.read_values(sampling);
+        } else {
+            for i in 0..self.len.min(CHUNK) {
+                self.values[i] = sampling.importance().value(mover.nearest(self.x[i], self.y[i]));
             }
-            let rank = self.batch.rank(self.batch.block(placement), entry);
-            if !sampling.scale().accepts(rank, value) {
-                continue;
-            }
-            let [dx, dy] = self.step::<P::Scalar, I>(kin, sampling, relaxation, entry, at, value);
-            let (moved_x, moved_y) = (x + dx, y + dy);
-            let moved = domain.min() + DVec2::new(moved_x.to_f64(), moved_y.to_f64());
-            let needed = sampling.scale().importance_of(rank);
-            let settled = sampling.importance().settle(centre, moved, needed);
-            let [moved_x, moved_y] = if settled == moved {
-                [moved_x, moved_y]
-            } else {
-                (settled - domain.min()).to_array().map(P::Scalar::from_f64)
-            };
-            chunk.set(kept, [moved_x, moved_y], entry);
-            kept += 1;
         }
-        chunk.len = kept;
-        if !self.batch.inside {
-            chunk.mark_inside::<P>(sampling, &self.clip, to_caller);
+        self.mark_accepted(sampling, batch)?;
+        self.pack_with_values();
+        mover.move_all(self);
+        if batch.inside {
+            self.keep[..self.len].fill(1);
+        } else {
+            self.mark_inside::<I, P>(walk);
         }
         Ok(next)
     }
+}
 
-    /// The fixed centres of the entries from `start` on, as many as fit. Returns the next entry.
-    fn fill_chunk<S: Scalar>(
-        &self,
-        kin: &Kin,
-        placement: &Placement<'_>,
-        start: usize,
-        chunk: &mut Chunk<S>,
-    ) -> usize {
-        chunk.len = 0;
-        let mut next = start;
-        if start == 0 {
-            [chunk.x[0], chunk.y[0]] = kin.own_centre(placement);
-            (chunk.len, next) = (1, 1);
-        }
-        while chunk.len < CHUNK && next < self.batch.end {
-            let (segment, end) = self.batch.segment::<S>(placement, next, CHUNK - chunk.len);
-            let filled = chunk.len..chunk.len + (end - next);
-            segment.write_columns(&mut chunk.x[filled.clone()], &mut chunk.y[filled.clone()]);
-            (chunk.len, next) = (filled.end, end);
-        }
-        next
+impl<I: Importance> Mover<'_, '_, I> {
+    /// The place of the domain nearest to a centre.
+    #[inline(always)]
+    fn nearest<S: Scalar>(&self, x: S, y: S) -> DVec2 {
+        let corner = self.sampling.placement().domain().min();
+        (corner + DVec2::new(x.to_f64(), y.to_f64())).clamp(self.low, self.high)
     }
 
-    /// How far candidate `i`, accepted at `at` where the importance is `value`, is moved.
-    fn step<S: Scalar, I: Importance>(
+    /// The phase that a point reads, at whose level's parents there is one tile in `per_tile` ranks, and
+    /// the contrast: its centre is nearest to `at`, where the importance is `value`.
+    #[inline(always)]
+    fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
+        let importance = self.sampling.importance();
+        let local = self.sampling.scale().threshold(importance.local(at, value));
+        let detail = if self.relaxation.has_rough() { importance.detail(at) } else { 0.0 };
+        ((local * per_tile).clamp(1.0, DELTA), detail)
+    }
+
+    /// Moves all points of a packed chunk, a run at a time.
+    #[inline(always)]
+    fn move_all<S: Scalar>(&self, chunk: &mut Chunk<S>) {
+        let node = &self.batch.node;
+        let placement = self.sampling.placement();
+        let lineages = [1, 2, 3].map(|below| Lineage::of_entries(self.kin, node, below));
+        let frames = [0, 1, 2].map(|deep: u8| {
+            let rotation = lineages[usize::from(deep)].rotation;
+            StepFrame::<S>::new(placement, node.level + 1 + deep, rotation)
+        });
+        let len = chunk.len.min(CHUNK);
+        for start in (0..len).step_by(RUN) {
+            self.move_run(chunk, start..len.min(start + RUN), &lineages, &frames);
+        }
+    }
+
+    /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
+    /// one to three levels below the batch's tile, then their vectors, then the steps, a loop each; at
+    /// last the others.
+    #[inline(always)]
+    fn move_run<S: Scalar>(
         &self,
-        kin: &Kin,
-        sampling: &Sampling<'_, I>,
-        relaxation: &RelaxationTable<'_>,
-        i: usize,
-        at: DVec2,
-        value: f64,
-    ) -> [S; 2] {
-        let placement = sampling.placement();
-        let threshold = sampling.scale().threshold(value);
-        let (level, tiles_above) = level_of(threshold);
+        chunk: &mut Chunk<S>,
+        run: Range<usize>,
+        lineages: &[Lineage; 3],
+        frames: &[StepFrame<S>; 3],
+    ) {
+        let Self { sampling, batch, .. } = *self;
+        let (placement, scale) = (sampling.placement(), sampling.scale());
+        let level = usize::from(batch.node.level);
+        let block = batch.block(placement);
+        let tiles = |below: usize| {
+            TileCounts::HEXAGON.all().get(level + below).map_or(f64::INFINITY, |n| *n as f64)
+        };
+        let (tiles_1, tiles_2) = (tiles(1), tiles(2));
+        let most = if placement.tables().depth() < 3 { tiles_2 } else { tiles(3) };
+        let per_tile =
+            [0, 1, 2].map(|below| RECIPROCALS.get(level + below).copied().unwrap_or(0.0));
+        let moves = level + 1 >= usize::from(FIRST_RELAXED_LEVEL);
+        let len = run.len().min(RUN);
+        let (mut phases, mut details) = ([1.0f64; RUN], [0.0f64; RUN]);
+        let (mut deep, mut other) = ([0u8; RUN], [0u8; RUN]);
+        for k in 0..len {
+            let i = run.start + k;
+            let value = chunk.values[i];
+            let threshold = scale.threshold(value);
+            let (past_1, past_2) = (threshold > tiles_1, threshold > tiles_2);
+            let one_tile = if past_1 { per_tile[1] } else { per_tile[0] };
+            let one_tile = if past_2 { per_tile[2] } else { one_tile };
+            let at = self.nearest(chunk.x[i], chunk.y[i]);
+            (phases[k], details[k]) = self.phase(at, value, one_tile);
+            deep[k] = u8::from(past_1) + u8::from(past_2);
+            other[k] = u8::from((threshold > most) | (chunk.entry[i] == 0) | !moves);
+        }
+        let mut coefficients = [(0u16, 0u16); RUN];
+        let mut turns = [0u8; RUN];
+        let mut classes = [0u16; RUN];
+        for k in 0..len {
+            let entry = usize::from(chunk.entry[run.start + k]);
+            coefficients[k] = block.rank_coefficients(entry);
+            (turns[k], classes[k]) = match deep[k] {
+                2.. => block.third(entry),
+                deep => (lineages[usize::from(deep)].turn, 0),
+            };
+        }
+        let class = |k: usize, generations: u32| match (deep[k], generations) {
+            (2.., 2) => classes[k].into(),
+            (deep, _) => {
+                lineages[usize::from(deep).min(2)].class(generations as usize, coefficients[k])
+            }
+        };
+        let [vx, vy] = self.relaxation.vectors(len, &phases, &details, class);
+        let (mut dx, mut dy) = ([S::default(); RUN], [S::default(); RUN]);
+        for k in 0..len {
+            let vector = Turn::new(turns[k]).turned([vx[k], vy[k]]);
+            [dx[k], dy[k]] = frames[usize::from(deep[k]).min(2)].step(vector);
+        }
+        let others = other[..len].iter().fold(0, |any, other| any | other) != 0;
+        if others || sampling.importance().longest_settling() > 0.0 {
+            for k in 0..len {
+                let i = run.start + k;
+                let step = if other[k] == 0 { [dx[k], dy[k]] } else { self.step(chunk, i) };
+                self.settle(chunk, i, step);
+            }
+        } else {
+            let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
+            for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
+                (*x, *y) = (*x + *dx, *y + *dy);
+            }
+        }
+    }
+
+    /// Moves point `i` by a step, or to where the importance lets it go.
+    #[inline(always)]
+    fn settle<S: Scalar>(&self, chunk: &mut Chunk<S>, i: usize, step: [S; 2]) {
+        let importance = self.sampling.importance();
+        let (x, y) = (chunk.x[i], chunk.y[i]);
+        (chunk.x[i], chunk.y[i]) = (x + step[0], y + step[1]);
+        if importance.longest_settling() > 0.0 {
+            let placement = self.sampling.placement();
+            let corner = placement.domain().min();
+            let centre = corner + DVec2::new(x.to_f64(), y.to_f64());
+            let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+            let rank = self.batch.rank(self.batch.block(placement), chunk.entry[i].into());
+            let needed = self.sampling.scale().importance_of(rank);
+            let settled = importance.settle(centre, moved, needed);
+            if settled != moved {
+                [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+            }
+        }
+    }
+
+    /// The step of any point of the chunk.
+    #[inline(never)]
+    fn step<S: Scalar>(&self, chunk: &Chunk<S>, i: usize) -> [S; 2] {
+        let Self { sampling, batch, kin, .. } = *self;
+        let (entry, value) = (usize::from(chunk.entry[i]), chunk.values[i]);
+        let (placement, node) = (sampling.placement(), &batch.node);
+        let tables = placement.tables();
+        let level = level_of(sampling.scale().threshold(value));
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
-        let importance = sampling.importance();
-        let local = sampling.scale().threshold(importance.local(at));
-        let phase = (local / tiles_above).clamp(1.0, DELTA);
-        let detail = if relaxation.has_rough() { importance.detail(at) } else { 0.0 };
-        let tables = placement.tables();
-        let (vector, rotation) = if i == 0 {
-            let Relation { class, rotation } = kin.of_own_centre(tables, level);
-            (relaxation.vector(class, phase, detail), rotation)
-        } else {
-            let coefficients = tables.block(self.batch.node.kind).rank_coefficients(i);
-            let Relation { class, rotation } = kin.of_entry(coefficients, level);
-            (relaxation.vector(class, phase, detail), rotation)
+        let at = self.nearest(chunk.x[i], chunk.y[i]);
+        let (phase, detail) = self.phase(at, value, RECIPROCALS[usize::from(level) - 1]);
+        let reading = self.relaxation.reading(phase, detail);
+        let below = usize::from(level.saturating_sub(node.level));
+        let block = batch.block(placement);
+        let (tiles, before) = tile_counts(node.level);
+        let child = match below {
+            // A child is one level below the tile; further down its centre is followed.
+            2.. => node.child(tables, entry, tiles, before),
+            _ => None,
         };
-        let [vx, vy] = vector.map(S::from_f64);
-        let frame = placement.turned_edge(level, rotation);
-        let [c, s, minus_s] = [frame.x, frame.y, -frame.y].map(S::from_f64);
-        [c * vx + minus_s * vy, s * vx + c * vy]
+        let (lineage, coefficients) = match child {
+            _ if entry == 0 => (Lineage::of_centre(tables, kin, node, below), (0, 0)),
+            Some(child) => {
+                let kin = kin.child(node, entry, &child);
+                (Lineage::of_centre(tables, &kin, &child, below - 1), (0, 0))
+            }
+            // A bound that is no promise may have hidden that a point is deeper than any here.
+            None => {
+                (Lineage::of_entries(kin, node, below.min(2)), block.rank_coefficients(entry))
+            }
+        };
+        let class = |generations: u32| lineage.class(generations as usize, coefficients);
+        let vector = Turn::new(lineage.turn).turned(self.relaxation.vector(&reading, class));
+        StepFrame::new(placement, level, lineage.rotation).step(vector)
     }
 }

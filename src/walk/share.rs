@@ -45,11 +45,6 @@ impl Share {
         self.piece_depth.is_some_and(|piece| depth > piece)
     }
 
-    /// Forgets the piece that the walk was in, before it opens a tile outside of it.
-    pub(crate) fn leave_piece(&mut self) {
-        self.piece_depth = None;
-    }
-
     /// Passes a piece that begins with `depth` open tiles: whether it is taken.
     pub(crate) fn take(&mut self, work: u64, depth: usize) -> bool {
         let taken = (self.from..self.to).contains(&self.passed);

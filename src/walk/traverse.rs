@@ -9,9 +9,13 @@ use super::batch::{
     Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at, work_below,
 };
 use super::expand::Open;
+use super::chunk::Chunk;
+use super::kin::{Kinship, Walk};
 use super::node::Node;
+use super::relaxed::{StepFrame, is_within, margin};
+use super::scalar::Position;
 use super::share::Share;
-use crate::clip::Clip;
+use crate::clip::{Clip, ToCaller};
 use crate::domain::Region;
 use crate::importance::Importance;
 use crate::placement::FRONTIER_LEVEL;
@@ -30,10 +34,13 @@ const FEW: usize = 800;
 /// The same for a tile across the clip's border, where candidates may be in vain and cost more.
 const FEW_AT_BORDER: usize = 200;
 
+/// Relaxed points know their kin by the tile at most so many levels above them.
+const KIN_LEVELS: u8 = 3;
+
 /// A traversal in progress. Holds everything it needs; nothing is allocated.
 #[derive(Clone, Debug)]
-pub(crate) struct Traversal {
-    open: [Open; OPEN],
+pub(crate) struct Traversal<K> {
+    open: [Open<K>; OPEN],
     depth: usize,
     /// Twice the number of frontier tiles begun, less one if only its centre was.
     frontier: usize,
@@ -43,9 +50,10 @@ pub(crate) struct Traversal {
     tiles_left: u64,
     /// The tile being visited and its candidates, built in place.
     batch: Batch,
+    kinship: K,
 }
 
-impl Traversal {
+impl<K: Kinship> Traversal<K> {
     pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
         Self {
             open: [Open::CLOSED; OPEN],
@@ -55,19 +63,55 @@ impl Traversal {
             share: sampling.share(),
             tiles_left: sampling.limits().tiles,
             batch: Batch::EMPTY,
+            kinship: K::NONE,
         }
     }
 
-    /// The clip.
+    /// Takes the batch's entries from `start` on into `chunk`, as many as fit, and marks the points
+    /// among them. Returns the next entry.
     #[inline(always)]
-    pub(crate) fn clip(&self) -> &Clip {
-        &self.clip
+    pub(crate) fn select<I: Importance, P: Position>(
+        &self,
+        sampling: &Sampling<'_, I>,
+        to_caller: &ToCaller<P::Scalar>,
+        start: usize,
+        chunk: &mut Chunk<P::Scalar>,
+    ) -> Result<usize, SamplingError> {
+        let walk = Walk { sampling, clip: &self.clip, to_caller };
+        self.kinship.select::<I, P>(&walk, &self.batch, start, chunk)
     }
 
     /// The current batch of candidates.
     #[inline(always)]
     pub(crate) fn batch(&self) -> &Batch {
         &self.batch
+    }
+
+    /// The kinship of the batch's tile.
+    #[inline(always)]
+    pub(crate) fn kinship(&self) -> &K {
+        &self.kinship
+    }
+
+    /// The same on constant ground: the entries from `start` on, moved by steps.
+    #[inline(always)]
+    pub(crate) fn select_moved<I: Importance, P: Position>(
+        &self,
+        sampling: &Sampling<'_, I>,
+        to_caller: &ToCaller<P::Scalar>,
+        start: usize,
+        (vectors, frame): (&[[f32; 2]], StepFrame<P::Scalar>),
+        chunk: &mut Chunk<P::Scalar>,
+    ) -> usize {
+        let next = chunk.load(sampling.placement(), &self.batch, start);
+        let len = chunk.len;
+        let columns = chunk.x[..len].iter_mut().zip(&mut chunk.y[..len]);
+        for ((x, y), vector) in columns.zip(vectors) {
+            let step = frame.step(*vector);
+            (*x, *y) = (*x + step[0], *y + step[1]);
+        }
+        chunk.mark_inside::<I, P>(&Walk { sampling, clip: &self.clip, to_caller });
+        next
     }
 
     /// The work that a walk by parts has passed.
@@ -120,6 +164,7 @@ impl Traversal {
             open.pending &= !bit;
             let (tiles, before) = tile_counts(open.node.level);
             self.batch.node = open.node.child(tables, digit, tiles, before)?;
+            self.kinship = open.kinship.child(&open.node, digit, &self.batch.node);
             self.batch.bound = open.bounds[digit];
             self.batch.inside = open.inside & bit != 0;
             self.batch.all_accepted = open.constant & bit != 0;
@@ -136,14 +181,25 @@ impl Traversal {
         let placement = sampling.placement();
         let centre = placement.domain().min() + placement.centre(node);
         let region = Region { centre, radius: placement.reach(node.level, usize::MAX) };
-        if !self.clip.touches(&region) {
+        let radius = region.radius + margin::<K>(sampling, node.level);
+        let region_of_points = Region { radius, ..region };
+        if !self.clip.touches(&region_of_points) {
             return Ok(None);
         }
+        let region = match K::RELAXED {
+            // Importance is read at the nearest place of the domain.
+            true => {
+                let domain = placement.domain();
+                Region { centre: centre.clamp(domain.min(), domain.max()), ..region }
+            }
+            false => region,
+        };
         let bound = sampling.importance().upper_bound(&region);
         let limit = sampling.rank_limit_of_bound(bound, &region)?;
         self.batch.node = *node;
+        self.kinship = K::frontier(placement.tables(), node);
         self.batch.bound = bound;
-        self.batch.inside = self.clip.holds(&region);
+        self.batch.inside = self.clip.holds(&region_of_points);
         self.batch.all_accepted = sampling.importance().is_constant(&region);
         Ok((limit > node.rank).then_some(limit))
     }
@@ -161,7 +217,7 @@ impl Traversal {
             .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
         self.batch.start = 1;
         let mut share = self.share.as_mut().filter(|share| !share.is_in_piece(self.depth));
-        let Batch { node, inside, all_accepted: constant, .. } = &self.batch;
+        let Batch { node, inside, all_accepted: constant, bound, .. } = &self.batch;
         if limit <= tiles_at(node.level).saturating_add(node.rank) {
             return Ok(false);
         }
@@ -177,7 +233,9 @@ impl Traversal {
                 share = None;
             }
         }
-        if levels <= usize::from(tables.depth()) {
+        // Relaxed points know their kin that near only.
+        let near = !K::RELAXED || is_within(node.level, KIN_LEVELS.min(tables.depth().max(2)), sampling.scale().threshold(*bound));
+        if near && levels <= usize::from(tables.depth()) {
             let end = if *constant {
                 count_below(node, block, levels, limit)
             } else {
@@ -196,7 +254,7 @@ impl Traversal {
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
-        open.expand(sampling, &self.clip, node, limit, *inside)?;
+        open.expand(sampling, &self.clip, (node, &self.kinship), limit, *inside)?;
         // Deeper levels are wanted, so that all children's centres are.
         let end = block.born_before(2);
         let taken = share.is_none_or(|share| share.take(end as u64, self.depth + 1));
