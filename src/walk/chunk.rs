@@ -5,6 +5,8 @@
 use glam::DVec2;
 
 use super::batch::{Batch, tile_counts};
+use super::frame::Segment;
+use super::ground::Steps;
 use super::kin::Walk;
 use super::scalar::{Position, Scalar};
 use crate::importance::Importance;
@@ -86,12 +88,52 @@ impl<S: Scalar> Chunk<S> {
     /// entry.
     #[inline(always)]
     pub(crate) fn load(&mut self, placement: &Placement<'_>, batch: &Batch, start: usize) -> usize {
+        self.load_as(
+            placement,
+            batch,
+            start,
+            #[inline(always)]
+            |_, segment, x, y| segment.write_columns(x, y),
+        )
+    }
+
+    /// The same, moved.
+    #[inline(always)]
+    pub(crate) fn load_moved(
+        &mut self,
+        placement: &Placement<'_>,
+        batch: &Batch,
+        start: usize,
+        steps: &Steps<'_, S>,
+    ) -> usize {
+        self.load_as(
+            placement,
+            batch,
+            start,
+            #[inline(always)]
+            |first, segment, x, y| {
+                let moved = steps.moved(first, segment.positions());
+                for ((to_x, to_y), [x, y]) in x.iter_mut().zip(y).zip(moved) {
+                    (*to_x, *to_y) = (x, y);
+                }
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn load_as(
+        &mut self,
+        placement: &Placement<'_>,
+        batch: &Batch,
+        start: usize,
+        write: impl Fn(usize, Segment<'_, S>, &mut [S], &mut [S]),
+    ) -> usize {
         let mut next = start;
         self.len = 0;
         while self.len < CHUNK && next < batch.end {
             let (segment, end) = batch.segment::<S>(placement, next, CHUNK - self.len);
             let filled = self.len..self.len + (end - next);
-            segment.write_columns(&mut self.x[filled.clone()], &mut self.y[filled.clone()]);
+            write(next, segment, &mut self.x[filled.clone()], &mut self.y[filled.clone()]);
             (self.len, next) = (filled.end, end);
         }
         (self.first, self.packed) = (start, false);

@@ -2,9 +2,8 @@
 //! test is needed.
 
 use super::chunk::Chunk;
-use super::ground::Ground;
+use super::ground::{Ground, Steps};
 use super::kin::{Kin, Kinship};
-use super::relaxed::StepFrame;
 use super::scalar::{Position, Scalar};
 use super::traverse::Traversal;
 use super::vectors::Vectors;
@@ -144,11 +143,9 @@ fn fill_from<K: Kinship, I: Importance, O: Output>(
     let mut chunk = Chunk::new();
     let mut written = 0;
     while traversal.advance(sampling)? {
-        let steps = match (&mut ground, traversal.kinship().kin()) {
-            (Some(ground), Some(kin)) => {
-                ground.steps(sampling.placement(), traversal.batch(), kin)
-            }
-            _ => None,
+        let steps = match &mut ground {
+            Some(ground) => ground.steps(sampling.placement(), traversal.batch()),
+            None => None,
         };
         let complete = vectors.run(
             #[inline(always)]
@@ -170,7 +167,7 @@ fn fill_from<K: Kinship, I: Importance, O: Output>(
 fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scalar = S>>>(
     sampling: &Sampling<'_, I>,
     traversal: &Traversal<K>,
-    steps: Option<(&[[f32; 2]], StepFrame<S>)>,
+    steps: Option<Steps<'_, S>>,
     to_caller: &ToCaller<S>,
     chunk: &mut Chunk<S>,
     (output, written): (&mut O, &mut usize),
@@ -186,13 +183,8 @@ fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scala
             let centres = segment.positions();
             match steps {
                 None => output.write(*written, end - next, centres, to_caller),
-                Some((vectors, frame)) => {
-                    let vectors = &vectors[next - batch.start..];
-                    let moved = centres.zip(vectors).map(move |([x, y], vector)| {
-                        let step = frame.step(*vector);
-                        [x + step[0], y + step[1]]
-                    });
-                    output.write(*written, end - next, moved, to_caller);
+                Some(steps) => {
+                    output.write(*written, end - next, steps.moved(next, centres), to_caller);
                 }
             }
             *written += end - next;
@@ -202,11 +194,8 @@ fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scala
     }
     while next < batch.end {
         next = match steps {
-            Some((vectors, frame)) => {
-                let vectors = &vectors[next - batch.start..];
-                traversal.select_moved::<I, O::Position>(
-                    sampling, to_caller, next, (vectors, frame), chunk,
-                )
+            Some(steps) => {
+                traversal.select_moved::<I, O::Position>(sampling, to_caller, next, &steps, chunk)
             }
             None => traversal.select::<I, O::Position>(sampling, to_caller, next, chunk)?,
         };

@@ -74,11 +74,6 @@ impl<'t, S: Scalar> Segment<'t, S> {
         Self { frame, centre, offsets }
     }
 
-    /// The number of candidates.
-    pub(crate) fn len(&self) -> usize {
-        self.offsets.u.len()
-    }
-
     /// The positions, relative to the domain's least corner. A plain loop over four arrays of one
     /// length, which compilers turn into vector instructions.
     #[inline(always)]

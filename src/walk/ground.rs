@@ -3,7 +3,7 @@
 //! added to the fixed centres as fast as these are read.
 
 use super::batch::{Batch, RECIPROCALS, count_below};
-use super::kin::{Kin, Lineage};
+use super::kin::Lineage;
 use super::node::Node;
 use super::relaxed::{DELTA, FIRST_RELAXED_LEVEL, StepFrame, Turn, level_of};
 use super::scalar::Scalar;
@@ -19,15 +19,9 @@ const LEVELS: u8 = 3;
 /// Entries of a block born at most three levels down, at the most.
 const ENTRIES: usize = 2716;
 
-/// The same at most two levels down.
-const SMALLER: usize = 195;
-
 /// From this many points on, looking up all vectors beforehand, some 3 ns each and up to 10,669 of them,
 /// costs less than looking up each point's.
 const WORTHWHILE: f64 = 8192.0;
-
-/// The greatest A of a block's entries, and one.
-const RANKS: usize = 2745;
 
 /// The vectors of constant ground.
 pub(crate) struct Ground<'a> {
@@ -37,14 +31,36 @@ pub(crate) struct Ground<'a> {
     level: u8,
     /// Ranks below this are points.
     limit: u64,
-    /// By type and entry: the vector in the frame of the block's tile, three levels above the point,
+    /// By type, coordinate and entry: the vector in the frame of the block's tile, three levels above the point,
     /// in edges of the point's level.
-    vectors: [[[f32; 2]; ENTRIES]; 4],
-    /// By type and A: the entry.
-    entries: [[u16; RANKS]; 4],
+    vectors: [[[f32; ENTRIES]; 2]; 4],
     known: [bool; 4],
-    /// The vectors of the entries of a block two levels above the points.
-    smaller: [[f32; 2]; SMALLER],
+}
+
+/// How far the entries of a block are moved.
+#[derive(Clone, Copy)]
+pub(crate) struct Steps<'g, S> {
+    /// By entry.
+    x: &'g [f32],
+    y: &'g [f32],
+    frame: StepFrame<S>,
+}
+
+impl<S: Scalar> Steps<'_, S> {
+    /// The positions of the entries from `start` on, once they are moved.
+    #[inline(always)]
+    pub(crate) fn moved(
+        &self,
+        start: usize,
+        centres: impl Iterator<Item = [S; 2]>,
+    ) -> impl Iterator<Item = [S; 2]> {
+        let frame = self.frame;
+        let steps = self.x[start..].iter().zip(&self.y[start..]);
+        centres.zip(steps).map(move |([x, y], (step_x, step_y))| {
+            let step = frame.step([*step_x, *step_y]);
+            [x + step[0], y + step[1]]
+        })
+    }
 }
 
 impl<'a> Ground<'a> {
@@ -72,80 +88,51 @@ impl<'a> Ground<'a> {
             reading,
             level,
             limit: sampling.scale().limit(bound),
-            vectors: [[[0.0; 2]; ENTRIES]; 4],
-            entries: [[0; RANKS]; 4],
+            vectors: [[[0.0; ENTRIES]; 2]; 4],
             known: [false; 4],
-            smaller: [[0.0; 2]; SMALLER],
         })
     }
 
-    /// The vectors of a batch's entries from its first to its last, and the frame in which they are
-    /// given; `None` for a batch of other tiles' centres.
+    /// The steps of a batch's entries; `None` for a batch of other tiles' centres.
     #[inline(always)]
     pub(crate) fn steps<S: Scalar>(
         &mut self,
         placement: &Placement<'_>,
         batch: &Batch,
-        kin: &Kin,
-    ) -> Option<(&[[f32; 2]], StepFrame<S>)> {
+    ) -> Option<Steps<'_, S>> {
         let node = &batch.node;
-        if batch.start == 0 {
+        let is_block = node.level + LEVELS == self.level && batch.start > 0;
+        if !is_block || batch.end > ENTRIES {
             return None;
         }
-        match self.level.checked_sub(node.level)? {
-            LEVELS => {
-                self.look_up(placement, node.kind);
-                let vectors = self.vectors[node.kind.index()].get(batch.start..batch.end)?;
-                Some((vectors, StepFrame::new(placement, self.level, node.rotation)))
-            }
-            2 => {
-                // The same tiles' ranks in the parent's block: A = d + 14·A′ − B′ by the recurrence.
-                let (parent, digit) = kin.parent()?;
-                self.look_up(placement, parent);
-                let block = batch.block(placement);
-                let (entries, vectors) =
-                    (&self.entries[parent.index()], &self.vectors[parent.index()]);
-                let ranks = block.rank_coefficients_of(batch.start..batch.end);
-                let smaller = self.smaller.get_mut(..batch.end - batch.start)?;
-                for (vector, (a, b)) in smaller.iter_mut().zip(ranks) {
-                    let rank = usize::from(digit) + 14 * usize::from(a) - usize::from(b);
-                    *vector = vectors[usize::from(entries[rank.min(RANKS - 1)]).min(ENTRIES - 1)];
-                }
-                Some((smaller, StepFrame::new(placement, self.level, kin.parent_rotation())))
-            }
-            _ => None,
+        if !self.known[node.kind.index()] {
+            self.look_up(placement, node.kind);
         }
+        let [x, y] = &self.vectors[node.kind.index()];
+        let frame = StepFrame::new(placement, self.level, node.rotation);
+        Some(Steps { x: &x[..batch.end], y: &y[..batch.end], frame })
     }
 
-    /// Looks up the vectors of a type's entries that can be points, unless they are known.
-    #[inline(always)]
-    fn look_up(&mut self, placement: &Placement<'_>, kind: TileType) {
-        if !self.known[kind.index()] {
-            self.look_up_now(placement, kind);
-        }
-    }
-
+    /// Looks up the vectors of a type's entries that can be points.
     #[cold]
     #[inline(never)]
-    fn look_up_now(&mut self, placement: &Placement<'_>, kind: TileType) {
+    fn look_up(&mut self, placement: &Placement<'_>, kind: TileType) {
         let block = placement.tables().block(kind);
         let lineage = Lineage::of_block(kind.index());
         let turns: [Turn; 12] = core::array::from_fn(|turn| Turn::new(turn as u8));
         // The tile of least rank has the most.
         let first = Node { kind, level: self.level - LEVELS, ..Node::root() };
         let end = count_below(&first, block, LEVELS.into(), self.limit);
-        let known = &mut self.vectors[kind.index()];
-        for ((i, (turn, class)), vector) in block.thirds().enumerate().take(end).zip(known) {
-            let (a, b) = block.rank_coefficients(i);
+        let [x, y] = &mut self.vectors[kind.index()];
+        let columns = x.iter_mut().zip(y);
+        for ((i, (turn, class)), (x, y)) in block.thirds().enumerate().take(end).zip(columns) {
+            let coefficients = block.rank_coefficients(i);
             let class = |generations: u32| match generations {
-                3.. => lineage.class(generations as usize, (a, b)),
+                3.. => lineage.class(generations as usize, coefficients),
                 _ => class.into(),
             };
             let in_grandparent = self.relaxation.vector(&self.reading, class);
-            *vector = turns[usize::from(turn) % 12].turned(in_grandparent);
-            if let Some(entry) = self.entries[kind.index()].get_mut(usize::from(a)) {
-                *entry = i as u16;
-            }
+            [*x, *y] = turns[usize::from(turn) % 12].turned(in_grandparent);
         }
         self.known[kind.index()] = true;
     }
@@ -159,14 +146,7 @@ mod tests {
     #[test]
     fn the_tables_are_as_large_as_the_blocks() {
         let tables = Tables::built_in();
-        let mut most = [0; 3];
-        for kind in TileType::ALL {
-            let block = tables.block(kind);
-            let thirds = block.thirds().len();
-            most[0] = most[0].max(thirds);
-            most[1] = most[1].max(usize::from(block.rank_coefficients(thirds - 1).0) + 1);
-            most[2] = most[2].max(block.born_before(3));
-        }
-        assert_eq!(most, [ENTRIES, RANKS, SMALLER]);
+        let most = TileType::ALL.map(|kind| tables.block(kind).thirds().len()).into_iter().max();
+        assert_eq!(most, Some(ENTRIES));
     }
 }

@@ -4,7 +4,7 @@ use super::batch::Batch;
 use super::chunk::Chunk;
 use super::node::Node;
 use super::scalar::Position;
-use crate::bake::class::{Classes, MAX_GENERATIONS, class_count, parts};
+use crate::bake::class::{Classes, MAX_GENERATIONS, class_count};
 use crate::clip::{Clip, ToCaller};
 use crate::importance::Importance;
 use crate::sampling::{Sampling, SamplingError};
@@ -21,8 +21,6 @@ pub(crate) trait Kinship: Copy + core::fmt::Debug {
     fn frontier(tables: &Tables<'_>, node: &Node) -> Self;
     /// Of the child with `digit` of `parent`, whose kinship this is.
     fn child(&self, parent: &Node, digit: usize, child: &Node) -> Self;
-    /// The kin, where points are moved.
-    fn kin(&self) -> Option<&Kin>;
     /// Takes entries of a batch of this kinship from `start` on into a chunk, as many as fit, and marks
     /// the points among them. Returns the next entry.
     fn select<I: Importance, P: Position>(
@@ -52,11 +50,6 @@ impl Kinship for () {
     fn child(&self, _: &Node, _: usize, _: &Node) -> Self {}
 
     #[inline(always)]
-    fn kin(&self) -> Option<&Kin> {
-        None
-    }
-
-    #[inline(always)]
     fn select<I: Importance, P: Position>(
         &self,
         walk: &Walk<'_, '_, I, P::Scalar>,
@@ -65,19 +58,6 @@ impl Kinship for () {
         chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
         chunk.select::<I, P>(walk, batch, start)
-    }
-}
-
-impl Kin {
-    /// How the parent is turned, in units of 30°.
-    pub(crate) fn parent_rotation(&self) -> u8 {
-        self.ancestors[0]
-    }
-
-    /// The parent's type and the tile's own digit.
-    pub(crate) fn parent(&self) -> Option<(TileType, u8)> {
-        let parts = parts(1, self.classes.over(1))?;
-        Some((parts.ancestor, parts.oldest_first[0]))
     }
 }
 
@@ -115,11 +95,6 @@ impl Kinship for Kin {
             classes: self.classes.child(digit as u8, child.kind),
             ancestors: [parent.rotation, self.ancestors[0]],
         }
-    }
-
-    #[inline(always)]
-    fn kin(&self) -> Option<&Kin> {
-        Some(self)
     }
 
     #[inline(always)]

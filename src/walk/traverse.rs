@@ -9,10 +9,11 @@ use super::batch::{
     Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at, work_below,
 };
 use super::expand::Open;
+use super::ground::Steps;
 use super::chunk::Chunk;
 use super::kin::{Kinship, Walk};
 use super::node::Node;
-use super::relaxed::{StepFrame, is_within, margin};
+use super::relaxed::{is_within, margin};
 use super::scalar::Position;
 use super::share::Share;
 use crate::clip::{Clip, ToCaller};
@@ -87,12 +88,6 @@ impl<K: Kinship> Traversal<K> {
         &self.batch
     }
 
-    /// The kinship of the batch's tile.
-    #[inline(always)]
-    pub(crate) fn kinship(&self) -> &K {
-        &self.kinship
-    }
-
     /// The same on constant ground: the entries from `start` on, moved by steps.
     #[inline(always)]
     pub(crate) fn select_moved<I: Importance, P: Position>(
@@ -100,16 +95,10 @@ impl<K: Kinship> Traversal<K> {
         sampling: &Sampling<'_, I>,
         to_caller: &ToCaller<P::Scalar>,
         start: usize,
-        (vectors, frame): (&[[f32; 2]], StepFrame<P::Scalar>),
+        steps: &Steps<'_, P::Scalar>,
         chunk: &mut Chunk<P::Scalar>,
     ) -> usize {
-        let next = chunk.load(sampling.placement(), &self.batch, start);
-        let len = chunk.len;
-        let columns = chunk.x[..len].iter_mut().zip(&mut chunk.y[..len]);
-        for ((x, y), vector) in columns.zip(vectors) {
-            let step = frame.step(*vector);
-            (*x, *y) = (*x + step[0], *y + step[1]);
-        }
+        let next = chunk.load_moved(sampling.placement(), &self.batch, start, steps);
         chunk.mark_inside::<I, P>(&Walk { sampling, clip: &self.clip, to_caller });
         next
     }
@@ -243,6 +232,8 @@ impl<K: Kinship> Traversal<K> {
             };
             let few = match (constant, inside) {
                 (true, true) => usize::MAX,
+                // Whole blocks, whose vectors are looked up together.
+                (true, false) if K::RELAXED => usize::MAX,
                 (_, false) => FEW_AT_BORDER,
                 (false, true) => FEW,
             };
