@@ -139,7 +139,7 @@ pub(crate) fn maps(data: &[u8]) {
     }
     // A part of the domain, or what does not even touch it.
     let [x, y, w, h] = numbers.bytes().map(|byte| f64::from(byte) / 200.0 - 0.1);
-    let part = Part { corner: DVec2::new(x, y), size: DVec2::new(w, h), shards: 1 + seed % 5 };
+    let part = Part { corner: DVec2::new(x, y), size: DVec2::new(w, h), shards: 1 + seed % 3 };
     sample(&map, map.domain(), seed, amount, &part);
     points_of_map(&map, seed);
     let domain = map.domain();
@@ -152,7 +152,7 @@ pub(crate) fn maps(data: &[u8]) {
 const LIMITS: Limits = limits();
 
 const fn limits() -> Limits {
-    Limits { points: 3000, tiles: 20_000 }
+    Limits { points: 800, tiles: 5000 }
 }
 
 /// A rectangle in units of the domain, and a number of shards.

@@ -30,8 +30,8 @@
 //! to 36 % on them. Asked for [`weighted`](crate::Sampling::weighted) points, a
 //! [relaxed](crate::Sampling::relaxed) sampling answers with
 //! [`SamplingError::Relaxed`](crate::SamplingError::Relaxed); everything else here takes fixed
-//! centres by itself. Under *constant* importance, equal weights area/n estimate with relaxed points as
-//! with any even set, but without proof that the bias is nothing.
+//! centres by itself. Under *constant* importance alone all points move by the same rule and stay
+//! uniform: there equal weights, area/(expected number), are unbiased for relaxed points, too.
 
 mod exact;
 mod stratified;

@@ -169,9 +169,9 @@ impl Scene {
     }
 }
 
-/// Twelve colours that are told apart on white; ours are drawn thick.
+/// Colours that are told apart on white; ours are drawn thick.
 fn style(i: usize, curve: &Curve) -> ShapeStyle {
-    const COLORS: [(u8, u8, u8); 12] = [
+    const COLORS: [(u8, u8, u8); 16] = [
         (0xd6, 0x27, 0x28),
         (0xff, 0x7f, 0x0e),
         (0xbc, 0x9d, 0x00),
@@ -184,6 +184,10 @@ fn style(i: usize, curve: &Curve) -> ShapeStyle {
         (0x55, 0x55, 0x55),
         (0xa0, 0xa0, 0xa0),
         (0x60, 0x80, 0x40),
+        (0x17, 0x5e, 0x3c),
+        (0x00, 0x00, 0x00),
+        (0x9e, 0xb9, 0xf3),
+        (0xc5, 0x8b, 0x5a),
     ];
     let (red, green, blue) = COLORS[i % COLORS.len()];
     let width = if curve.sampler.starts_with("ours") { 3 } else { 1 };
