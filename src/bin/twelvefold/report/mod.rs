@@ -118,8 +118,8 @@ pub(crate) fn run(options: &ReportOptions) -> Result<(), Failure> {
 const INTRODUCTION: &str = "\
 # Error and time
 
-Root-mean-square error over 32 fixed seeds (random placements, shifts or scramblings), in percent of the \
-mean integral, and the least time to make one set with its weights (placement included), nanoseconds a \
+Root-mean-square error over 32 fixed seeds (random placements, shifts or scramblings; for light, over all eight \
+surfaces with each), in percent of the mean integral, and the least time to make one set with its weights (placement included), nanoseconds a \
 sample, on one thread. Preparation of a map (pyramids, cumulative sums, alias table) is not in the time. The least \
 error of a column is bold. Slopes are exponents of the error in the number of samples, from 256 on.
 
@@ -264,9 +264,10 @@ fn lighting_scenes(lighting: &Lighting, sizes: &[usize]) -> Vec<Scene> {
             for seed in 0..SEEDS {
                 let (set, seconds) = timed(|| (sampler.make)(&target, n, seed));
                 let Some(set) = set else { continue };
-                let errors = lighting.errors(seed as usize % lighting.len(), &set);
-                for ((gathered, error), mean) in gathered.iter_mut().zip(errors).zip(means) {
-                    gathered.add(error / mean, seconds);
+                for errors in lighting.errors(&set) {
+                    for ((gathered, error), mean) in gathered.iter_mut().zip(errors).zip(means) {
+                        gathered.add(error / mean, seconds);
+                    }
                 }
             }
             for (curve, gathered) in curves.iter_mut().zip(gathered) {
