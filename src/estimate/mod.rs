@@ -34,6 +34,7 @@
 //! uniform: there equal weights, area/(expected number), are unbiased for relaxed points, too.
 
 mod exact;
+mod order;
 mod stratified;
 mod warp;
 mod weighted;

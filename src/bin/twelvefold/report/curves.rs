@@ -101,14 +101,15 @@ impl Scene {
         }
     }
 
-    /// Error against samples and against time, side by side, on logarithmic axes.
+    /// Error against samples and against time, side by side, on logarithmic axes; beside each name, the
+    /// slope of the former.
     ///
     /// # Errors
     /// The plotter's, which writes to memory only.
     pub(crate) fn svg(&self) -> Result<String, Box<dyn Error>> {
         let mut text = String::new();
         {
-            let area = SVGBackend::with_string(&mut text, (1200, 520)).into_drawing_area();
+            let area = SVGBackend::with_string(&mut text, (1260, 520)).into_drawing_area();
             area.fill(&WHITE)?;
             let area = area.titled(&self.name, ("sans-serif", 20))?;
             let (left, rest) = area.split_horizontally(520);
@@ -118,7 +119,11 @@ impl Scene {
             for (i, curve) in self.curves.iter().enumerate() {
                 let y = 20 + 20 * i as i32;
                 legend.draw(&PathElement::new(vec![(0, y), (22, y)], style(i, curve)))?;
-                legend.draw(&Text::new(curve.sampler, (28, y - 6), ("sans-serif", 13)))?;
+                let name = match curve.slope() {
+                    Some(slope) => format!("{} ({slope:.2})", curve.sampler),
+                    None => curve.sampler.to_owned(),
+                };
+                legend.draw(&Text::new(name, (28, y - 6), ("sans-serif", 13)))?;
             }
             area.present()?;
         }
