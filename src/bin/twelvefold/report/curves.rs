@@ -157,6 +157,7 @@ impl Scene {
             .bold_line_style(BLACK.mix(0.15))
             .x_desc(x_name)
             .y_desc("relative RMS error")
+            .y_labels(16)
             .x_label_formatter(&|v| if *v >= 1.0 { format!("{v:.0}") } else { format!("{v:.0e}") })
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .draw()?;
