@@ -146,18 +146,22 @@ impl Scene {
                 .fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
             if low < high { 0.8 * low..1.25 * high } else { 0.1..1.0 }
         };
+        let mut errors = range(&|m| m.error);
+        if 100.0 * errors.start > errors.end {
+            // The plotter labels nothing below the least power of ten: a short axis begins before one.
+            errors.start = 0.8 * 10f64.powf(errors.start.log10().floor());
+        }
         let mut chart = ChartBuilder::on(area)
             .margin(8)
             .x_label_area_size(34)
             .y_label_area_size(64)
-            .build_cartesian_2d(range(&x).log_scale(), range(&|m| m.error).log_scale())?;
+            .build_cartesian_2d(range(&x).log_scale(), errors.log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(BLACK.mix(0.06))
             .bold_line_style(BLACK.mix(0.15))
             .x_desc(x_name)
             .y_desc("relative RMS error")
-            .y_labels(16)
             .x_label_formatter(&|v| if *v >= 1.0 { format!("{v:.0}") } else { format!("{v:.0e}") })
             .y_label_formatter(&|v| format!("{v:.0e}"))
             .draw()?;
