@@ -1,29 +1,58 @@
 //! What the fuzz targets do with their bytes: shared by cargo-fuzz and by the stable test that replays
 //! and mutates the corpus (`tests/fuzz_corpus.rs`).
 
-use std::ops::ControlFlow;
+use std::collections::BTreeSet;
 
-use glam::DVec2;
+use glam::{DVec2, Vec2};
+use twelvefold::bake::{bake, relaxation::Relaxation};
 use twelvefold::estimate::{Warp, Weighting, exactly, normalise, post_stratify};
 use twelvefold::tiling::{Digits, FCode, TileCounts, TileType};
 use twelvefold::{
-    Amount, BilinearMap, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels, Limits,
-    Placement, Sampling, Tables, paper,
+    Amount, BilinearMap, Constant, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels,
+    Limits, Placement, Position, Sample, Sampling, SamplingError, Scalar as _, StippleMap, Tables,
+    paper,
 };
 
-/// Table files and digit files: accepted only as they were written.
+/// Table files, relaxation files and digit files, as they are and with their checksum made right (of
+/// what is no file of any kind, too): accepted only as they were written.
 pub(crate) fn tables(data: &[u8]) {
-    if let Ok(tables) = Tables::from_bytes(data) {
-        assert_eq!(tables.as_bytes(), data);
-        let placement = Placement::with_tables(Domain::unit(), 1, tables);
-        let one = twelvefold::Constant::ONE;
-        let sampling = Sampling::new(&placement, &one, Amount::Points(100.0)).unwrap();
-        assert!(sampling.points::<DVec2>().unwrap().all(|sample| sample.is_ok()));
+    files(data);
+    if let Some((document, _)) = data.split_last_chunk::<4>() {
+        let mut repaired = document.to_vec();
+        repaired.extend(crc32fast::hash(document).to_le_bytes());
+        files(&repaired);
     }
     if let Ok(text) = std::str::from_utf8(data)
         && let Ok(digits) = Digits::parse(text)
     {
         assert!(twelvefold::tiling::Rules::new(&digits).is_ok());
+    }
+}
+
+/// A table file or a relaxation file: what is accepted is what would be written, and gives points.
+fn files(data: &[u8]) {
+    if let Ok(tables) = Tables::from_bytes(data) {
+        assert_eq!(tables.as_bytes(), data);
+        use_tables(tables);
+    }
+    if let Ok(relaxation) = Relaxation::from_bytes(data) {
+        assert_eq!(relaxation.to_bytes().unwrap(), data);
+        // Another digit assignment than the tables' is refused.
+        if let Ok(baked) = bake(&Tables::built_in().rules(), 1, Some(&relaxation)) {
+            use_tables(Tables::from_bytes(&baked).unwrap());
+        }
+    }
+}
+
+/// Tables that passed all checks give sound sets, whatever offsets they hold.
+fn use_tables(tables: Tables<'_>) {
+    let placement = Placement::with_tables(Domain::unit(), 1, tables);
+    let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(200.0)).unwrap();
+    let part = Part { corner: DVec2::splat(0.3), size: DVec2::new(0.2, 0.6), shards: 2 };
+    parts(&sampling, whole::<DVec2, _>(&sampling, Domain::unit()), &part);
+    if let Ok(relaxed) = sampling.relaxed() {
+        assert!(tables.relaxation().is_some());
+        parts(&relaxed, whole::<DVec2, _>(&relaxed, Domain::unit()), &part);
     }
 }
 
@@ -100,43 +129,117 @@ pub(crate) fn maps(data: &[u8]) {
         let direction = glam::DVec3::new(size.x, size.y, min.x);
         assert!(sky.pdf(direction) >= 0.0);
     }
-    let Ok(mut map) = ImageMap::new(width, height, pixels, policy) else { return };
+    let stipple = StippleMap::new(width, height, pixels.clone(), policy, f64::from(numbers.byte()));
+    let Ok(mut map) = ImageMap::new(width, height, pixels, policy) else {
+        assert!(stipple.is_err());
+        return;
+    };
     if let Ok(domain) = Domain::new(min, size) {
         map = map.over(domain);
     }
-    sample(&map, seed, amount);
+    // A part of the domain, or what does not even touch it.
+    let [x, y, w, h] = numbers.bytes().map(|byte| f64::from(byte) / 200.0 - 0.1);
+    let part = Part { corner: DVec2::new(x, y), size: DVec2::new(w, h), shards: 1 + seed % 3 };
+    sample(&map, map.domain(), seed, amount, &part);
     points_of_map(&map, seed);
-    sample(&BilinearMap::new(map), seed, amount);
+    let domain = map.domain();
+    sample(&BilinearMap::new(map), domain, seed, amount, &part);
+    if let Ok(stipple) = stipple {
+        sample(&stipple, stipple.domain(), seed, amount, &part);
+    }
 }
 
 const LIMITS: Limits = limits();
 
 const fn limits() -> Limits {
-    Limits { points: 5000, tiles: 50_000 }
+    Limits { points: 800, tiles: 5000 }
 }
 
-fn sample<I: Importance + Domained>(importance: &I, seed: u64, amount: Amount) {
-    let domain = importance.domain();
+/// A rectangle in units of the domain, and a number of shards.
+struct Part {
+    corner: DVec2,
+    size: DVec2,
+    shards: u64,
+}
+
+/// Fixed and relaxed points in both precisions, whole, clipped and sharded.
+fn sample<I: Importance>(importance: &I, domain: Domain, seed: u64, amount: Amount, part: &Part) {
     let placement = Placement::new(domain, seed);
-    let Ok(sampling) = Sampling::with_limits(&placement, importance, amount, LIMITS) else {
+    let Ok(fixed) = Sampling::with_limits(&placement, importance, amount, LIMITS) else {
         return;
     };
-    let mut ranks = std::collections::BTreeSet::new();
-    let result = sampling.visit(|sample: twelvefold::Sample<DVec2>| {
-        assert!(domain.contains(sample.position));
-        assert!(ranks.insert(sample.rank));
-        ControlFlow::Continue(())
-    });
-    // Maps keep their promises.
-    assert!(!matches!(
-        result,
-        Err(twelvefold::SamplingError::InvalidValue { .. }
-            | twelvefold::SamplingError::InvalidBound { .. })
-    ));
-    let _ = sampling.visit(|sample: twelvefold::Sample<glam::Vec2>| {
-        assert!(domain.contains(sample.position.as_dvec2()));
-        ControlFlow::Continue(())
-    });
+    let relaxed = fixed.relaxed().unwrap();
+    for sampling in [fixed, relaxed] {
+        let points = whole::<DVec2, _>(&sampling, domain);
+        parts(&sampling, points, part);
+        let points = whole::<Vec2, _>(&sampling, domain);
+        parts(&sampling, points, part);
+    }
+}
+
+/// All points: in the domain, ranks unique, no broken promise of a map. `None` where limits or
+/// precision forbid them.
+fn whole<P: Position + PartialEq, I: Importance>(
+    sampling: &Sampling<'_, I>,
+    domain: Domain,
+) -> Option<Vec<Sample<P>>> {
+    let mut ranks = BTreeSet::new();
+    let mut points = Vec::new();
+    let all = sampling.points::<P>().ok()?;
+    for sample in all {
+        match sample {
+            Ok(sample) => {
+                assert!(domain.contains(double(sample.position)));
+                assert!(ranks.insert(sample.rank));
+                points.push(sample);
+            }
+            Err(
+                error @ (SamplingError::InvalidValue { .. } | SamplingError::InvalidBound { .. }),
+            ) => {
+                panic!("a map broke its promise: {error}")
+            }
+            Err(_) => return None,
+        }
+    }
+    Some(points)
+}
+
+/// Clipped points are the whole's inside; shards one after the other, and a buffer, hold the whole.
+fn parts<P: Position + PartialEq, I: Importance>(
+    sampling: &Sampling<'_, I>,
+    points: Option<Vec<Sample<P>>>,
+    part: &Part,
+) {
+    let Some(points) = points else { return };
+    let domain = sampling.placement().domain();
+    let mut buffer = vec![P::default(); points.len()];
+    let filled = sampling.fill(&mut buffer).unwrap();
+    assert!(filled.complete && filled.written == points.len());
+    assert!(points.iter().zip(&buffer).all(|(point, position)| point.position == *position));
+
+    let corner = domain.min() + domain.size() * part.corner;
+    if let Ok(rectangle) = Domain::new(corner, domain.size() * part.size)
+        && let Some(mut clipped) = whole::<P, I>(&sampling.clipped(rectangle), domain)
+    {
+        // In another order: blocks across the clip's border are divided.
+        let inside = points.iter().filter(|point| rectangle.contains(double(point.position)));
+        let mut inside: Vec<_> = inside.copied().collect();
+        inside.sort_by_key(|point| point.rank);
+        clipped.sort_by_key(|point| point.rank);
+        assert!(clipped == inside, "clip {rectangle:?}");
+    }
+    let mut union = Vec::new();
+    for index in 0..part.shards as usize {
+        let Ok(shard) = sampling.shard(index, part.shards as usize) else { return };
+        let Some(points) = whole::<P, I>(&shard, domain) else { return };
+        union.extend(points);
+    }
+    assert!(union == points, "{} shards", part.shards);
+}
+
+fn double<P: Position>(position: P) -> DVec2 {
+    let [x, y] = position.xy();
+    DVec2::new(x.to_f64(), y.to_f64())
 }
 
 fn points_of_map(map: &ImageMap, seed: u64) {
@@ -162,22 +265,5 @@ fn points_of_map(map: &ImageMap, seed: u64) {
     {
         post_stratify(&mut points, map, (seed % 10) as f64);
         normalise(&mut points, n as f64);
-    }
-}
-
-/// An importance that covers a domain of its own.
-trait Domained {
-    fn domain(&self) -> Domain;
-}
-
-impl Domained for ImageMap {
-    fn domain(&self) -> Domain {
-        self.domain()
-    }
-}
-
-impl Domained for BilinearMap {
-    fn domain(&self) -> Domain {
-        self.map().domain()
     }
 }

@@ -19,7 +19,8 @@ pub(crate) const FRONTIER_LEVEL: u8 = 4;
 
 /// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
 /// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
-/// than 9 fit; relaxed points can move in from 0.33 edges farther, which admits 13.
+/// than 9 fit; relaxed points can move in from up to 0.58 edges farther
+/// ([`MAX_LENGTH`](crate::bake::relaxation::MAX_LENGTH)), which admits 17.
 const MAX_FRONTIER: usize = 24;
 
 /// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times

@@ -80,7 +80,23 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
         }
     }
 
+    /// Calls `take` for each point, for as long as it succeeds: the same as the iterator, with less
+    /// between one point and the next.
+    #[inline]
+    pub(crate) fn for_each_sample(
+        mut self,
+        mut take: impl FnMut(Sample<P>) -> Result<(), SamplingError>,
+    ) -> Result<(), SamplingError> {
+        while self.next_chunk()? {
+            for i in 0..self.chunk.len {
+                take(self.sample(i))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Point `i` of the chunk.
+    #[inline(always)]
     fn sample(&self, i: usize) -> Sample<P> {
         let batch = self.traversal.batch();
         let block = batch.block(self.sampling.placement());

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::bake::relaxation::RelaxationError;
+use crate::bake::relaxation::{Relaxation, RelaxationError};
 use crate::bake::wire::{self, BlockBytes, Document};
 use crate::bake::{self, MAX_DEPTH};
 use crate::relaxed::RelaxationTable;
@@ -196,6 +196,14 @@ impl<'a> Tables<'a> {
     #[must_use]
     pub fn relaxation(&self) -> Option<&RelaxationTable<'a>> {
         self.relaxation.as_ref()
+    }
+
+    /// The relaxed offsets decoded, as [`bake`](crate::bake::bake) takes them for tables of another
+    /// depth. `None` if these tables have none.
+    #[must_use]
+    pub fn to_relaxation(&self) -> Option<Relaxation> {
+        // `from_bytes` and build.rs have checked the offsets.
+        self.relaxation?.to_relaxation(self.digits).ok()
     }
 
     /// The block of a type.

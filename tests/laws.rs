@@ -206,3 +206,29 @@ fn seeds_give_different_points() {
         }
     }
 }
+
+#[test]
+fn relaxed_points_of_constant_importance_are_unbiased() {
+    // All points move by one rule, so that the set stays uniform: equal weights 1/n are right.
+    let (seeds, n) = (6000, 40.0);
+    let functions: [fn(DVec2) -> f64; 3] =
+        [|_| 1.0, |p| f64::from(p.x + p.y < 0.25), |p| p.x * (1.0 - p.x) * p.y * (1.0 - p.y)];
+    let integrals = [1.0, 0.25 * 0.25 / 2.0, 1.0 / 36.0];
+    let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
+    for seed in 0..seeds {
+        let placement = Placement::new(Domain::unit(), seed);
+        let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(n)).unwrap();
+        let relaxed = sampling.relaxed().unwrap();
+        let points: Vec<DVec2> = relaxed.points().unwrap().map(|p| p.unwrap().position).collect();
+        for (i, function) in functions.iter().enumerate() {
+            let error = points.iter().map(|p| function(*p)).sum::<f64>() / n - integrals[i];
+            sums[i] += error;
+            squares[i] += error * error;
+        }
+    }
+    for (sum, squares) in sums.into_iter().zip(squares) {
+        let z = sum / f64::sqrt(squares);
+        println!("relaxed, constant: z = {z:.2}");
+        assert!(z.abs() < 4.0, "z = {z}");
+    }
+}

@@ -218,6 +218,9 @@ fn slots_out_of_order_or_short_of_classes_are_named() {
     let found = slots[7].vectors.len() as u32 - 1;
     let short = changed(&|s| s[7].vectors.truncate(found as usize));
     assert_eq!(short, RelaxationError::VectorCount { layer: 1, slot: 7, found });
+    // Offsets of any length were read; walks then start at more tiles than there is room for.
+    let far = changed(&|s| s[7].scale = 1e5);
+    assert_eq!(far, RelaxationError::TooFar { layer: 1, slot: 7 });
     let full = changed(&|s| s[last].vectors.push([0, 0]));
     assert_eq!(full, RelaxationError::VectorCount { layer: 1, slot: last, found: 1 });
 }

@@ -25,6 +25,11 @@ pub const VERSION: u16 = 1;
 /// The most bytes of a file that is looked at.
 pub const MAX_BYTES: usize = 1 << 25;
 
+/// The longest vector allowed, in edges of a point's level: some two spacings, which are from one edge
+/// (τ = δ) to λ = 3.7 edges (τ = 1) long. Walks visit all tiles from which a point could move in, so
+/// that their cost and the number of tiles at which they start grow with it.
+pub const MAX_LENGTH: f64 = 8.0;
+
 /// Bytes before the provenance text: magic, version, digits, length of the text.
 const HEADER: usize = 8 + 2 + 4 * 14 + 2;
 
@@ -131,6 +136,13 @@ pub enum RelaxationError {
         /// The slot.
         slot: usize,
     },
+    /// A slot's longest vector is longer than [`MAX_LENGTH`].
+    TooFar {
+        /// The layer.
+        layer: u8,
+        /// The slot.
+        slot: usize,
+    },
     /// A slot has more vectors than there are classes, or the first or last slot has any, or a slot
     /// lacks a class that is born before the next slot.
     VectorCount {
@@ -179,6 +191,11 @@ impl fmt::Display for RelaxationError {
             Self::Scale { layer, slot } => {
                 write!(f, "{} layer, slot {slot}: the scale is no number >= 0", name(layer))
             }
+            Self::TooFar { layer, slot } => write!(
+                f,
+                "{} layer, slot {slot}: a vector is longer than {MAX_LENGTH} edges",
+                name(layer)
+            ),
             Self::VectorCount { layer, slot, found } => {
                 write!(
                     f,
@@ -265,6 +282,9 @@ impl Layer {
             if slot.vectors.len() < least as usize || slot.vectors.len() > most as usize {
                 let found = slot.vectors.len() as u32;
                 return Err(RelaxationError::VectorCount { layer, slot: i, found });
+            }
+            if slot.longest() > MAX_LENGTH {
+                return Err(RelaxationError::TooFar { layer, slot: i });
             }
         }
         Ok(Self { slots })

@@ -3,9 +3,13 @@
 use alloc::vec::Vec;
 use core::fmt;
 
+use glam::DVec2;
+
 use super::Weighted;
+use super::order::{Buckets, Candidate};
 use crate::importance::Importance;
 use crate::placement::Placement;
+use crate::points::Sample;
 use crate::sampling::{Amount, Limits, Sampling, SamplingError};
 
 /// Why there are no n points.
@@ -43,21 +47,6 @@ impl From<SamplingError> for ExactError {
     }
 }
 
-/// A point's key: the magnification at which it appears. Keys decide, equal keys by rank, which is
-/// unique.
-#[derive(Clone, Copy)]
-struct Candidate {
-    key: f64,
-    point: Weighted,
-}
-
-impl Candidate {
-    fn order(&self, other: &Self) -> core::cmp::Ordering {
-        // Keys are not NaN: importance of an accepted point is above 0 and finite.
-        self.key.total_cmp(&other.key).then(self.point.rank.cmp(&other.point.rank))
-    }
-}
-
 /// The `n` points that appear first as the density rises: those with the smallest
 /// (rank + u)/importance, in this order.
 ///
@@ -68,8 +57,9 @@ impl Candidate {
 /// integral (the self-normalised weight), else importance × the density at which the next point would
 /// appear. For the first k points multiply weights by n/k. Both are biased by O(1/n).
 ///
-/// One walk that finds slightly more than n points, and one sort: some 60 ns a point more than
-/// [`Sampling::points`], and 48 bytes a point of memory.
+/// One walk that finds slightly more than n points, and a sort that knows how the keys are spread.
+/// Measured against [`Sampling::weighted`] collected: 1.3 to 1.6 times its cost at 256 points, 2 to 2.5
+/// times at 16,384, up to 3 times at 262,144. Some 90 bytes a point of memory, 40 of them the result.
 ///
 /// # Errors
 /// [`ExactError`]: all that [`Sampling::with_limits`] and its walk report, and [`ExactError::TooFew`].
@@ -94,8 +84,9 @@ pub fn exactly<I: Importance>(
     if bound == 0.0 || integral == Some(0.0) {
         return Err(ExactError::TooFew { asked: n, found: 0 });
     }
-    // More than n by some standard deviations of the count, so that one walk is nearly always enough.
-    let margin = 3.0 * libm::sqrt(wanted) + 8.0;
+    // More than n by at least three standard deviations of the count even on a sun-lit map (27 % at 8
+    // points, 3.3 % at 256), so that one walk is nearly always enough.
+    let margin = 1.5 * libm::sqrt(wanted) + 6.0;
     let mut density = (wanted + margin) / integral.unwrap_or(bound * domain.area());
     // A small set of an importance of unknown integral can be anywhere between nothing and the bound.
     let walk_limits = Limits { points: u64::MAX, ..limits };
@@ -120,21 +111,31 @@ pub fn exactly<I: Importance>(
             }
             Err(error) => return Err(error.into()),
         };
-        let mut candidates = candidates(&sampling, limits)?;
+        let candidates = candidates(&sampling, n, limits)?;
         let found = candidates.len();
         if found > n || (found == n && greatest.is_some()) {
-            let next = if found > n {
-                candidates.select_nth_unstable_by(n, Candidate::order).1.key
-            } else {
-                placement.greatest_threshold() / bound
-            };
-            candidates.truncate(n);
-            candidates.sort_unstable_by(Candidate::order);
-            let per_value = match integral {
-                Some(integral) => wanted / integral,
-                None => next / placement.ranks_per_density(),
-            };
-            return Ok(candidates.into_iter().map(|c| c.weighted(per_value)).collect());
+            // Where no integral is known: the key of the first point that is left out.
+            let mut next = placement.greatest_threshold() / bound;
+            let mut points = Vec::with_capacity(n);
+            let per_value = integral.map(|integral| wanted / integral);
+            candidates.in_order(|candidate| {
+                let more = points.len() < n;
+                if more {
+                    points.push(weighted(candidate, per_value.unwrap_or(1.0)));
+                } else {
+                    next = candidate.key;
+                }
+                more
+            });
+            if per_value.is_none() {
+                let per_value = next / placement.ranks_per_density();
+                for point in &mut points {
+                    // So far the density is the importance.
+                    point.density *= per_value;
+                    point.weight = 1.0 / point.density;
+                }
+            }
+            return Ok(points);
         }
         if greatest.is_some() {
             return Err(ExactError::TooFew { asked: n, found });
@@ -145,35 +146,32 @@ pub fn exactly<I: Importance>(
     }
 }
 
-/// All points of the sampling with their keys.
+/// All points of the sampling, about `n`, with their keys.
 fn candidates<I: Importance>(
     sampling: &Sampling<'_, I>,
+    n: usize,
     limits: Limits,
-) -> Result<Vec<Candidate>, SamplingError> {
-    let mut candidates = Vec::new();
-    for sample in sampling.points()? {
-        let sample = sample?;
-        if candidates.len() as u64 > 2 * limits.points.saturating_add(64) {
+) -> Result<Buckets, SamplingError> {
+    let scale = sampling.scale();
+    let mut candidates = Buckets::new(n, scale.magnification());
+    let most = 2 * limits.points.saturating_add(64);
+    sampling.points::<DVec2>()?.for_each_sample(|Sample { position, rank }| {
+        if candidates.len() as u64 > most {
             let expected = candidates.len() as f64;
             return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
         }
-        let value = sampling.importance().value(sample.position);
-        if value <= 0.0 || value.is_nan() {
-            // Rounding carried the position over an edge of the importance: no finite density there.
-            continue;
+        let value = sampling.importance().value(position);
+        // Where rounding carried the position over an edge of the importance, no density is finite.
+        if value > 0.0 {
+            candidates.push(Candidate { key: scale.shifted(rank) / value, position, rank, value });
         }
-        let key = sampling.scale().shifted(sample.rank) / value;
-        let (position, rank) = (sample.position, sample.rank);
-        let point = Weighted { position, rank, density: value, weight: 0.0 };
-        candidates.push(Candidate { key, point });
-    }
+        Ok(())
+    })?;
     Ok(candidates)
 }
 
-impl Candidate {
-    /// The point with its density and weight; so far `density` held the importance.
-    fn weighted(self, per_value: f64) -> Weighted {
-        let density = self.point.density * per_value;
-        Weighted { density, weight: 1.0 / density, ..self.point }
-    }
+fn weighted(candidate: &Candidate, per_value: f64) -> Weighted {
+    let Candidate { position, rank, value, .. } = *candidate;
+    let density = value * per_value;
+    Weighted { position, rank, density, weight: 1.0 / density }
 }

@@ -26,10 +26,15 @@
 //! | [`Warp`] | n | few accurate samples of a pixel map: the least error per sample, but no fixed sequence |
 //! | [`Placement::aligned`](crate::Placement::aligned) | expected n | constant importance: a complete level, as accurate as the best known sets |
 //!
-//! Fixed centres only: relaxed points are moved after acceptance, and these weights are biased by 4 to
-//! 36 % on them. They are made by another type, which has no weights.
+//! Fixed centres only: relaxed points are moved after acceptance, and these weights would be biased by 4
+//! to 36 % on them. Asked for [`weighted`](crate::Sampling::weighted) points, a
+//! [relaxed](crate::Sampling::relaxed) sampling answers with
+//! [`SamplingError::Relaxed`](crate::SamplingError::Relaxed); everything else here takes fixed
+//! centres by itself. Under *constant* importance alone all points move by the same rule and stay
+//! uniform: there equal weights, area/(expected number), are unbiased for relaxed points, too.
 
 mod exact;
+mod order;
 mod stratified;
 mod warp;
 mod weighted;

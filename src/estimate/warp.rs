@@ -106,6 +106,11 @@ impl<'m> Warp<'m> {
     /// Exactly `n` points that follow the map: a complete level of the tiling, warped. Ordered by rank;
     /// ranks are those of the uniform set.
     ///
+    /// A level has n points on average; it is cut or topped up by rank, which costs some 6 % more error
+    /// than its own number of points would. The rest of the error is the border's: a level at a random
+    /// angle meets the square's edges irregularly, where scrambled Sobol points have as many in every
+    /// strip along them. [`post_stratify`](Self::post_stratify) removes a part of it.
+    ///
     /// # Errors
     /// Those of [`exactly`], with `limits`.
     pub fn level(&self, n: usize, seed: u64, limits: Limits) -> Result<Vec<Weighted>, ExactError> {

@@ -58,8 +58,12 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// ```
     ///
     /// # Errors
-    /// [`SamplingError::Precision`] if no `f64` lies in the domain.
+    /// [`SamplingError::Relaxed`] for [`relaxed`](Self::relaxed) points, which are accepted in one place
+    /// and lie in another; [`SamplingError::Precision`] if no `f64` lies in the domain.
     pub fn weighted(&self, weighting: Weighting) -> Result<WeightedPoints<'a, I>, SamplingError> {
+        if self.is_relaxed() {
+            return Err(SamplingError::Relaxed);
+        }
         Ok(WeightedPoints { sampling: *self, points: self.points()?, weighting })
     }
 
@@ -108,5 +112,25 @@ pub fn normalise(points: &mut [Weighted], expected: f64) {
         for point in points {
             point.weight *= factor;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Amount, Constant, Domain, Placement};
+
+    #[test]
+    fn relaxed_points_have_no_weights() {
+        let placement = Placement::new(Domain::unit(), 3);
+        let fixed = Sampling::new(&placement, &Constant::ONE, Amount::Points(300.0)).unwrap();
+        let relaxed = fixed.relaxed().unwrap();
+        for weighting in [Weighting::Density, Weighting::Smoothed] {
+            assert_eq!(relaxed.weighted(weighting).unwrap_err(), SamplingError::Relaxed);
+            assert!(fixed.weighted(weighting).is_ok());
+        }
+        // However it is cut.
+        assert!(relaxed.clipped(Domain::unit()).weighted(Weighting::Density).is_err());
+        assert!(relaxed.shard(0, 2).unwrap().weighted(Weighting::Density).is_err());
     }
 }

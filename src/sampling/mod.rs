@@ -99,6 +99,8 @@ pub enum SamplingError {
     },
     /// The placement's tables have no relaxed offsets.
     NoRelaxation,
+    /// Weights were asked for of relaxed points, which have none: estimates from them would be biased.
+    Relaxed,
     /// There is no such part.
     Shard {
         /// Which part.
@@ -138,6 +140,9 @@ impl fmt::Display for SamplingError {
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
             Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
+            Self::Relaxed => f.write_str(
+                "relaxed points have no unbiased weights: use the fixed centres for estimates",
+            ),
             Self::Shard { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
             Self::Precision => {
                 f.write_str("positions of this precision cannot resolve the domain; use DVec2")
@@ -240,7 +245,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     ///
     /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
     /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
-    /// (by 4 % and more). Not progressive either: a point's place depends on the density around it.
+    /// (by 4 % and more), which is why [`weighted`](Self::weighted) refuses. Not progressive either: a point's place depends on the density around it.
     /// Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
     /// points stay at their centres.
     ///
@@ -251,6 +256,11 @@ impl<'a, I: Importance> Sampling<'a, I> {
             Some(_) => Ok(Self { relaxed: true, ..self }),
             None => Err(SamplingError::NoRelaxation),
         }
+    }
+
+    /// Whether points are moved from their tiles' centres.
+    pub(crate) fn is_relaxed(&self) -> bool {
+        self.relaxed
     }
 
     /// The offsets by which points are moved, in relaxed mode.

@@ -101,14 +101,15 @@ impl Scene {
         }
     }
 
-    /// Error against samples and against time, side by side, on logarithmic axes.
+    /// Error against samples and against time, side by side, on logarithmic axes; beside each name, the
+    /// slope of the former.
     ///
     /// # Errors
     /// The plotter's, which writes to memory only.
     pub(crate) fn svg(&self) -> Result<String, Box<dyn Error>> {
         let mut text = String::new();
         {
-            let area = SVGBackend::with_string(&mut text, (1200, 520)).into_drawing_area();
+            let area = SVGBackend::with_string(&mut text, (1260, 520)).into_drawing_area();
             area.fill(&WHITE)?;
             let area = area.titled(&self.name, ("sans-serif", 20))?;
             let (left, rest) = area.split_horizontally(520);
@@ -118,7 +119,11 @@ impl Scene {
             for (i, curve) in self.curves.iter().enumerate() {
                 let y = 20 + 20 * i as i32;
                 legend.draw(&PathElement::new(vec![(0, y), (22, y)], style(i, curve)))?;
-                legend.draw(&Text::new(curve.sampler, (28, y - 6), ("sans-serif", 13)))?;
+                let name = match curve.slope() {
+                    Some(slope) => format!("{} ({slope:.2})", curve.sampler),
+                    None => curve.sampler.to_owned(),
+                };
+                legend.draw(&Text::new(name, (28, y - 6), ("sans-serif", 13)))?;
             }
             area.present()?;
         }
@@ -141,11 +146,16 @@ impl Scene {
                 .fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(v), high.max(v)));
             if low < high { 0.8 * low..1.25 * high } else { 0.1..1.0 }
         };
+        let mut errors = range(&|m| m.error);
+        if 100.0 * errors.start > errors.end {
+            // The plotter labels nothing below the least power of ten: a short axis begins before one.
+            errors.start = 0.8 * 10f64.powf(errors.start.log10().floor());
+        }
         let mut chart = ChartBuilder::on(area)
             .margin(8)
             .x_label_area_size(34)
             .y_label_area_size(64)
-            .build_cartesian_2d(range(&x).log_scale(), range(&|m| m.error).log_scale())?;
+            .build_cartesian_2d(range(&x).log_scale(), errors.log_scale())?;
         chart
             .configure_mesh()
             .light_line_style(BLACK.mix(0.06))
@@ -169,9 +179,9 @@ impl Scene {
     }
 }
 
-/// Twelve colours that are told apart on white; ours are drawn thick.
+/// Colours that are told apart on white; ours are drawn thick.
 fn style(i: usize, curve: &Curve) -> ShapeStyle {
-    const COLORS: [(u8, u8, u8); 12] = [
+    const COLORS: [(u8, u8, u8); 16] = [
         (0xd6, 0x27, 0x28),
         (0xff, 0x7f, 0x0e),
         (0xbc, 0x9d, 0x00),
@@ -181,12 +191,16 @@ fn style(i: usize, curve: &Curve) -> ShapeStyle {
         (0x00, 0xa0, 0xb0),
         (0x94, 0x67, 0xbd),
         (0xe3, 0x77, 0xc2),
-        (0x55, 0x55, 0x55),
-        (0xa0, 0xa0, 0xa0),
-        (0x60, 0x80, 0x40),
+        (0x77, 0x77, 0x77),
+        (0x4c, 0x9f, 0xe0),
+        (0x8a, 0xa0, 0x30),
+        (0x17, 0x5e, 0x3c),
+        (0x00, 0x00, 0x00),
+        (0xd8, 0xa0, 0x60),
+        (0x9e, 0xb9, 0xf3),
     ];
     let (red, green, blue) = COLORS[i % COLORS.len()];
-    let width = if curve.sampler.starts_with("ours") { 3 } else { 1 };
+    let width = if curve.sampler.starts_with("ours") { 4 } else { 2 };
     RGBColor(red, green, blue).stroke_width(width)
 }
 

@@ -1,8 +1,13 @@
 //! The samplers compared: ours in its variants, and what else is in use.
 
+use std::sync::LazyLock;
+
 use glam::DVec2;
-use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise};
-use twelvefold::{Amount, Constant, Domain, ImageMap, Importance, Limits, Placement, Sampling};
+use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise, post_stratify};
+use twelvefold::{
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Probed,
+    Sampling,
+};
 
 use super::classic::{Alias, InverseCdf, Random, halton, plastic, sobol};
 
@@ -68,6 +73,25 @@ fn thresholded<I: Importance>(
     sampling.weighted(weighting).ok()?.collect::<Result<_, _>>().ok()
 }
 
+/// The positions that a sampling writes to a buffer; about n.
+pub(crate) fn filled<I: Importance>(sampling: &Sampling<'_, I>, n: usize) -> Option<Vec<DVec2>> {
+    let mut buffer = vec![DVec2::ZERO; n + 64 + n / 8];
+    let mut filled = sampling.fill(&mut buffer).ok()?;
+    if !filled.complete {
+        buffer = vec![DVec2::ZERO; 2 * n + 1024];
+        filled = sampling.fill(&mut buffer).ok()?;
+    }
+    buffer.truncate(filled.written);
+    Some(buffer)
+}
+
+/// Constant importance as a map, in whose quarters points are stratified. `None` never.
+static EVEN: LazyLock<Option<ImageMap>> = LazyLock::new(|| {
+    let side = 64;
+    let map = ImageMap::new(side, side, vec![1.0; side * side], InvalidPixels::Reject).ok()?;
+    Some(map.over(Domain::unit()))
+});
+
 /// Equal weights for points of the unit square.
 fn equal(points: impl ExactSizeIterator<Item = DVec2>) -> Set {
     let weight = 1.0 / points.len() as f64;
@@ -84,7 +108,7 @@ fn shifted(points: impl ExactSizeIterator<Item = DVec2>, seed: u64) -> Set {
 }
 
 /// The samplers of constant importance.
-pub(crate) const UNIFORM: [Uniform; 11] = [
+pub(crate) const UNIFORM: [Uniform; 14] = [
     Uniform {
         name: "ours, 1/density",
         make: |n, seed| {
@@ -95,6 +119,35 @@ pub(crate) const UNIFORM: [Uniform; 11] = [
         name: "ours, smoothed",
         make: |n, seed| {
             thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Smoothed).map(set)
+        },
+    },
+    Uniform {
+        name: "ours, normalised",
+        make: |n, seed| {
+            let mut points =
+                thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density)?;
+            normalise(&mut points, n as f64);
+            Some(set(points))
+        },
+    },
+    Uniform {
+        name: "ours, post-stratified",
+        make: |n, seed| {
+            let mut points =
+                thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density)?;
+            post_stratify(&mut points, EVEN.as_ref()?, 6.0);
+            Some(set(points))
+        },
+    },
+    Uniform {
+        name: "ours, relaxed",
+        make: |n, seed| {
+            let placement = Placement::new(Domain::unit(), seed);
+            let sampling =
+                Sampling::new(&placement, &Constant::ONE, Amount::Points(n as f64)).ok()?;
+            let weight = 1.0 / n as f64;
+            let points = filled(&sampling.relaxed().ok()?, n)?;
+            Some(points.into_iter().map(|p| (p, weight)).collect())
         },
     },
     Uniform {
@@ -110,10 +163,8 @@ pub(crate) const UNIFORM: [Uniform; 11] = [
             let placement = Placement::aligned(Domain::unit(), seed, n as f64).ok()?;
             let sampling =
                 Sampling::new(&placement, &Constant::ONE, Amount::Density(n as f64)).ok()?;
-            let mut buffer = vec![DVec2::ZERO; n + 64 + n / 8];
-            let filled = sampling.fill(&mut buffer).ok()?;
             let weight = 1.0 / n as f64;
-            Some(buffer[..filled.written].iter().map(|p| (*p, weight)).collect())
+            Some(filled(&sampling, n)?.into_iter().map(|p| (p, weight)).collect())
         },
     },
     Uniform { name: "Halton, shifted", make: |n, seed| Some(shifted((0..n).map(halton), seed)) },
@@ -158,7 +209,7 @@ pub(crate) const UNIFORM: [Uniform; 11] = [
 ];
 
 /// The samplers of a map.
-pub(crate) const FOLLOWING: [Following; 12] = [
+pub(crate) const FOLLOWING: [Following; 15] = [
     Following {
         name: "ours, 1/density",
         make: |target, n, seed| {
@@ -189,6 +240,13 @@ pub(crate) const FOLLOWING: [Following; 12] = [
             let mut points = thresholded(map.domain(), map, n, seed, Weighting::Density)?;
             target.warp.post_stratify(&mut points, 6.0);
             Some(set(points))
+        },
+    },
+    Following {
+        name: "ours, few-probe",
+        make: |target, n, seed| {
+            let map = Probed::new(target.map, target.map.domain(), 1.0);
+            thresholded(target.map.domain(), &map, n, seed, Weighting::Density).map(set)
         },
     },
     Following {
@@ -231,6 +289,22 @@ pub(crate) const FOLLOWING: [Following; 12] = [
             let points = shifted((0..n).map(flat), seed);
             let warped = |(p, _): (DVec2, f64)| target.weighted(target.inverse.position(p), n);
             Some(points.into_iter().map(warped).collect())
+        },
+    },
+    Following {
+        name: "R2 + inverse CDF",
+        make: |target, n, seed| {
+            let points = shifted((0..n).map(plastic), seed);
+            let warped = |(p, _): (DVec2, f64)| target.weighted(target.inverse.position(p), n);
+            Some(points.into_iter().map(warped).collect())
+        },
+    },
+    Following {
+        name: "white + inverse CDF",
+        make: |target, n, seed| {
+            let mut random = Random::new(seed);
+            let draw = |_| target.weighted(target.inverse.position(random.point()), n);
+            Some((0..n).map(draw).collect())
         },
     },
     Following {

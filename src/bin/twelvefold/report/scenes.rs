@@ -115,11 +115,6 @@ impl Lighting {
         Self { name, map, surfaces }
     }
 
-    /// The number of surfaces.
-    pub(crate) fn len(&self) -> usize {
-        self.surfaces.len()
-    }
-
     /// The mean light of all surfaces: without occluders, and with.
     pub(crate) fn means(&self) -> [f64; 2] {
         let mean = |f: fn(&Surface) -> f64| {
@@ -128,22 +123,22 @@ impl Lighting {
         [mean(|s| s.open), mean(|s| s.occluded)]
     }
 
-    /// Errors of the estimates of green light on a surface: without its occluder, and with.
-    pub(crate) fn errors(&self, surface: usize, set: &[(DVec2, f64)]) -> [f64; 2] {
-        let surface = &self.surfaces[surface];
+    /// Errors of the estimates of green light on each surface: without its occluder, and with.
+    pub(crate) fn errors(&self, set: &[(DVec2, f64)]) -> Vec<[f64; 2]> {
         let (_, height) = self.map.size();
-        let mut sums = [0.0; 2];
+        let mut errors: Vec<[f64; 2]> =
+            self.surfaces.iter().map(|surface| [-surface.open, -surface.occluded]).collect();
         for (position, weight) in set {
             let light = self.map.sample(*position);
             let row = (position.y as usize).min(height - 1);
-            let received = weight
-                * self.map.solid_angle(row)
-                * f64::from(light.radiance[1])
-                * light.direction.dot(surface.normal).max(0.0);
-            sums[0] += received;
-            sums[1] += received * surface.visible(light.direction);
+            let green = weight * self.map.solid_angle(row) * f64::from(light.radiance[1]);
+            for (surface, [open, occluded]) in self.surfaces.iter().zip(&mut errors) {
+                let received = green * light.direction.dot(surface.normal).max(0.0);
+                *open += received;
+                *occluded += received * surface.visible(light.direction);
+            }
         }
-        [sums[0] - surface.open, sums[1] - surface.occluded]
+        errors
     }
 }
 
