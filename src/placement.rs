@@ -242,6 +242,7 @@ impl<'t> Placement<'t> {
     }
 
     /// The tiles at which walks start.
+    #[cfg(test)]
     pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
         self.frontier.iter().flatten()
     }

@@ -308,9 +308,7 @@ impl<'a> LayerTable<'a> {
     fn entry_later(&self, class: &impl Fn(u32) -> u32, from: usize) -> Entry {
         let later = (from..self.slots.len()).map(|slot| self.record(slot));
         let mut holding = later.filter(|record| class(record.generations) < record.count);
-        holding
-            .next()
-            .map_or(Entry::ZERO, |record| self.entry(&record, class(record.generations)))
+        holding.next().map_or(Entry::ZERO, |record| self.entry(&record, class(record.generations)))
     }
 
     #[inline(always)]

@@ -92,7 +92,7 @@ fn the_stated_bound_on_vectors_holds_for_every_class_and_phase() {
                 .iter()
                 .map(|(_, classes)| {
                     let [x, y] = layer.vector(classes, tau);
-                    x.hypot(y)
+                    f64::from(x).hypot(y.into())
                 })
                 .fold(0.0, f64::max);
             assert!(longest <= bound, "tau {tau}: {longest} > {bound}");

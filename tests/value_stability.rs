@@ -10,7 +10,7 @@ use glam::{DVec2, Vec2};
 use sha2::{Digest, Sha256};
 use twelvefold::{
     Amount, Constant, Domain, Function, ImageMap, Importance, InvalidPixels, Placement, Region,
-    Sampling,
+    Sampling, StippleMap,
 };
 
 const GOLDEN: &str = include_str!("golden/points.txt");
@@ -109,6 +109,27 @@ fn points_are_those_of_the_golden_file() {
                 let sampling = Sampling::new(&placement, map, Amount::Points(count)).unwrap();
                 describe(&mut lines, &format!("{name}-{seed}-{count}"), &sampling);
             }
+        }
+        // The committed offsets, on constant ground of several phases and on maps.
+        for count in [40.0, 3_000.0, 12_000.0, 40_000.0, 90_000.0] {
+            for (name, domain) in [("unit", Domain::unit()), ("off-centre", off_centre)] {
+                let placement = Placement::new(domain, seed);
+                let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(count));
+                let sampling = sampling.unwrap().relaxed().unwrap();
+                describe(&mut lines, &format!("relaxed-constant-{name}-{seed}-{count}"), &sampling);
+            }
+        }
+        for (name, map) in &maps[..4] {
+            let placement = Placement::new(map.domain(), seed);
+            let amount = Amount::Points(20_000.0);
+            let sampling = Sampling::new(&placement, map, amount).unwrap().relaxed().unwrap();
+            describe(&mut lines, &format!("relaxed-{name}-{seed}"), &sampling);
+            let pixels = map.pixels().to_vec();
+            let (reject, size) = (InvalidPixels::Reject, map.domain().size());
+            let (width, height) = (size.x as usize, size.y as usize);
+            let stipple = StippleMap::new(width, height, pixels, reject, 20_000.0).unwrap();
+            let sampling = Sampling::new(&placement, &stipple, amount).unwrap().relaxed().unwrap();
+            describe(&mut lines, &format!("stipple-{name}-{seed}"), &sampling);
         }
         // A domain that is not the map's: the nearest pixel counts outside.
         let map = texture();

@@ -202,9 +202,9 @@ pub(crate) fn encode(
         children,
         blocks: columns.each_ref().map(BlockColumns::as_bytes),
         provenance: relaxation.map_or("", |relaxation| &relaxation.provenance),
-        layers: layers.each_ref().map(|layer| {
-            layer.as_ref().map_or_else(LayerBytes::default, LayerColumns::as_bytes)
-        }),
+        layers: layers
+            .each_ref()
+            .map(|layer| layer.as_ref().map_or_else(LayerBytes::default, LayerColumns::as_bytes)),
     };
     let mut bytes =
         bincode::serde::encode_to_vec(&document, config()).map_err(|_| BakeError::Range)?;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::field::{Constant, Field, spacing, threshold_of_phase};
 use super::ground::{Ground, Region};
-use super::image::{Image, ImageRules};
+use super::image::Image;
 use super::random::Random;
 use super::site::sites;
 use crate::bake::relaxation::{DELTA, Relaxation};
@@ -64,10 +64,10 @@ pub fn phase(k: usize, n: usize) -> f64 {
 ///
 /// # Errors
 /// [`OutOfRange`] for an image whose maximum is past some 10⁵ times its mean.
-pub fn image_points(
+pub fn image_points<I: crate::Importance + Sync>(
     rules: &Rules,
     table: Option<&Relaxation>,
-    image: &Image,
+    image: &Image<I>,
     random: &mut Random,
 ) -> Result<Vec<DVec2>, OutOfRange> {
     let margin =
@@ -163,18 +163,18 @@ pub fn image_sweep(
     phases: usize,
     seed: u64,
 ) -> Result<Vec<(Fidelity, f64)>, OutOfRange> {
-    let image_rules = match table {
-        Some(_) => ImageRules::default(),
-        // Fixed centres are accepted by the bilinear importance at them.
-        None => ImageRules { accept_radius: 0.0, ..ImageRules::default() },
-    };
     let measured = (0..phases).into_par_iter().map(|k| {
         let tau = phase(k, phases);
-        let Some(image) = Image::new(values.to_vec(), width, count, tau, image_rules) else {
-            return Ok(None);
-        };
         let mut random = Random::new(seed, &[k as u64]);
-        let points = image_points(rules, table, &image, &mut random)?;
+        let points = if table.is_some() {
+            let image = Image::stippled(values.to_vec(), width, count, tau);
+            image.map(|image| image_points(rules, table, &image, &mut random))
+        } else {
+            // Fixed centres are accepted by the bilinear importance at them.
+            let image = Image::fixed(values.to_vec(), width, count, tau);
+            image.map(|image| image_points(rules, None, &image, &mut random))
+        };
+        let Some(points) = points.transpose()? else { return Ok(None) };
         let image = Importance { values, width };
         Ok(fidelity::fidelity(&points, &image)
             .map(|measured| (measured, fidelity::share_on_zero(&points, &image))))

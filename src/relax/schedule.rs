@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::force::Law;
-use super::image::ImageRules;
+use crate::importance::StippleMap;
 use super::random::Random;
 use super::table::Table;
 use super::train::{self, ImagePass, Pass, Stage};
@@ -128,7 +128,7 @@ impl Recipe {
             patches,
             points: 40e3,
             // A little less averaging than in use: the layer meets somewhat rougher sets.
-            rules: ImageRules { accept_radius: 0.6, ..ImageRules::default() },
+            acceptance: 0.6,
             stages,
         };
         Self {
@@ -174,7 +174,7 @@ impl Recipe {
         let images = ImagePass {
             patches: 4,
             points: 2e3,
-            rules: ImageRules::default(),
+            acceptance: StippleMap::ACCEPTANCE,
             stages: vec![stage(4, 0.4, NO_CONTACTS, 0.2)],
         };
         Self {

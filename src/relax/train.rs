@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::field::{spacing, threshold_of_phase};
 use super::force::{Law, Points, READS, Sum};
 use super::ground::{Ground, Region, density};
-use super::image::{Image, ImageRules};
+use super::image::Image;
 use super::motif;
 use super::patch::Ramp;
 use super::random::Random;
@@ -113,7 +113,8 @@ fn image_patch(
 ) -> Result<Points, OutOfRange> {
     let tau = super::report::phase(number, images.patches);
     let values = motif::image(random);
-    let Some(field) = Image::new(values, motif::SIDE, images.points, tau, images.rules) else {
+    let image = Image::accepting(values, motif::SIDE, images.points, tau, images.acceptance);
+    let Some(field) = image else {
         return Err(OutOfRange);
     };
     let half = field.half_extent();
@@ -145,8 +146,8 @@ pub struct ImagePass {
     pub patches: usize,
     /// Points an image.
     pub points: f64,
-    /// How images are read.
-    pub rules: ImageRules,
+    /// Half-side, in spacings, of the box whose mean decides on acceptance.
+    pub acceptance: f64,
     /// The stages.
     pub stages: Vec<Stage>,
 }

@@ -313,9 +313,7 @@ impl<I: Importance> Mover<'_, '_, I> {
                 (Lineage::of_centre(tables, &kin, &child, below - 1), (0, 0))
             }
             // A bound that is no promise may have hidden that a point is deeper than any here.
-            None => {
-                (Lineage::of_entries(kin, node, below.min(2)), block.rank_coefficients(entry))
-            }
+            None => (Lineage::of_entries(kin, node, below.min(2)), block.rank_coefficients(entry)),
         };
         let class = |generations: u32| lineage.class(generations as usize, coefficients);
         let vector = Turn::new(lineage.turn).turned(self.relaxation.vector(&reading, class));

@@ -8,9 +8,9 @@
 use super::batch::{
     Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at, work_below,
 };
+use super::chunk::Chunk;
 use super::expand::Open;
 use super::ground::Steps;
-use super::chunk::Chunk;
 use super::kin::{Kinship, Walk};
 use super::node::Node;
 use super::relaxed::{is_within, margin};
@@ -223,7 +223,12 @@ impl<K: Kinship> Traversal<K> {
             }
         }
         // Relaxed points know their kin that near only.
-        let near = !K::RELAXED || is_within(node.level, KIN_LEVELS.min(tables.depth().max(2)), sampling.scale().threshold(*bound));
+        let near = !K::RELAXED
+            || is_within(
+                node.level,
+                KIN_LEVELS.min(tables.depth().max(2)),
+                sampling.scale().threshold(*bound),
+            );
         if near && levels <= usize::from(tables.depth()) {
             let end = if *constant {
                 count_below(node, block, levels, limit)
