@@ -78,6 +78,19 @@ pub(crate) fn table(tables: &[Table]) -> String {
             ours(table, 1024) / table.at("inverse CDF + Owen", 1024),
         );
     }
+    at_most(
+        "uniform, 1M: relaxed over fixed, ns a point",
+        1.3,
+        uniform.at("twelvefold, relaxed", MILLION) / default_million,
+    );
+    for (name, table) in [("smooth", smooth), ("textured", textured), ("hard-edged", edges)] {
+        for (mode, row) in
+            [("relaxed", "twelvefold, relaxed"), ("stipple map", "twelvefold, relaxed stipple")]
+        {
+            let relaxed = table.at(row, MILLION) / ours(table, MILLION);
+            at_most(&format!("{name} map, 1M: {mode} over fixed, ns a point"), 1.3, relaxed);
+        }
+    }
     at_most("map of 1024² pixels replaced in place, in memcpys of its pixels", 3.0, update());
     text
 }

@@ -21,7 +21,6 @@ use glam::DVec2;
 use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError};
 use crate::domain::{Domain, Region};
 
-
 /// No box grows past this many spacings of the mean importance.
 const LARGEST_SPACING: f64 = 1.5;
 

@@ -129,9 +129,7 @@ mod tests {
 
     #[test]
     fn images_that_ask_for_nothing_are_refused() {
-        let new = |values: Vec<f32>, width| {
-            Image::stippled(values, width, 100.0, 3.0).is_some()
-        };
+        let new = |values: Vec<f32>, width| Image::stippled(values, width, 100.0, 3.0).is_some();
         assert!(new(vec![0.0, 1.0, 0.0, 0.0], 2));
         assert!(!new(vec![], 2) && !new(vec![1.0; 4], 0) && !new(vec![1.0; 5], 2));
         assert!(!new(vec![0.0; 4], 2) && !new(vec![1.0, f32::NAN], 2) && !new(vec![1.0, -1.0], 2));
@@ -168,8 +166,7 @@ mod tests {
     #[test]
     fn points_stay_on_the_side_of_an_edge_that_asks_for_them() {
         let values = edge_image();
-        let image =
-            Image::stippled(values.clone(), TEST_IMAGE_SIDE, 6e4, 3.0).unwrap();
+        let image = Image::stippled(values.clone(), TEST_IMAGE_SIDE, 6e4, 3.0).unwrap();
         let is_dark = |p: DVec2| {
             let q = image.pixels(p).clamp(DVec2::ZERO, DVec2::splat(1023.0));
             values[q.y as usize * TEST_IMAGE_SIDE + q.x as usize] > 0.0

@@ -3,11 +3,11 @@
 use core::fmt;
 
 use super::force::Law;
-use crate::importance::StippleMap;
 use super::random::Random;
 use super::table::Table;
 use super::train::{self, ImagePass, Pass, Stage};
 use crate::bake::relaxation::{Relaxation, RelaxationError};
+use crate::importance::StippleMap;
 use crate::tiling::{OutOfRange, Rules, TileType};
 
 /// A grid of slots: segments of (first τ, generations, slots a unit of τ), each up to the next one's

@@ -5,6 +5,7 @@ mod files;
 mod hostile;
 mod inputs;
 mod outputs;
+mod training;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
