@@ -42,6 +42,8 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
     for start in starts(sampling) {
         descend(rules, start, FRONTIER_LEVEL, level as u8, &mut found);
     }
+    let relaxation =
+        sampling.relaxation().map(|table| table.to_relaxation(*rules.digits()).unwrap());
     let mut points = Vec::new();
     let last = DVec2::from(domain.max().to_array().map(f64::next_down));
     for Found { rank, born, at_birth, path, .. } in found {
@@ -54,10 +56,9 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
         let at = fixed.clamp(DVec2::ZERO, last);
         let value = sampling.importance().value(at);
         if rank < sampling.scale().limit(value) {
-            let moved = match sampling.relaxation() {
+            let moved = match &relaxation {
                 Some(table) => {
-                    let table = table.to_relaxation(*rules.digits()).unwrap();
-                    let moved = fixed + step(sampling, &table, at, value, &path);
+                    let moved = fixed + step(sampling, table, at, value, &path);
                     let needed = sampling.scale().importance_of(rank);
                     sampling.importance().settle(fixed, moved, needed)
                 }
@@ -278,7 +279,9 @@ mod tests {
                 let placement = Placement::with_tables(map.domain(), seed, tables);
                 let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
                 let sampling = sampling.relaxed().unwrap();
-                prop_assert_eq!(sampled(&sampling), points(&sampling));
+                let (a, b) = (sampled(&sampling), points(&sampling));
+                let wrong: Vec<_> = a.iter().zip(&b).filter(|(a, b)| a != b).collect();
+                prop_assert!(a == b, "depth {depth} {} {} {wrong:?}", a.len(), b.len());
                 let pixels = map.pixels().to_vec();
                 let stipple =
                     StippleMap::new(width, height, pixels, InvalidPixels::Reject, count).unwrap();

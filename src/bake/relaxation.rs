@@ -368,12 +368,12 @@ impl Layer {
 }
 
 impl Slot {
-    /// The length of the longest vector, rounded up.
+    /// The length of the longest vector, rounded up: more than single precision makes of it.
     #[must_use]
     pub fn longest(&self) -> f64 {
         let squared = |v: &[i8; 2]| i32::from(v[0]).pow(2) + i32::from(v[1]).pow(2);
         let longest = self.vectors.iter().map(squared).max().unwrap_or(0);
-        libm::sqrt(f64::from(longest)) * f64::from(self.scale) * (1.0 + 1e-12)
+        libm::sqrt(f64::from(longest)) * f64::from(self.scale) * (1.0 + 1e-6)
     }
 }
 

@@ -86,8 +86,8 @@ pub trait Importance {
 
     /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
     /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
-    /// their side. Not farther from `moved` than [`longest_settling`](Self::longest_settling), unless
-    /// nearer to `centre`.
+    /// their side. Not farther from `moved`, or from `centre`, than
+    /// [`longest_settling`](Self::longest_settling), unless nearer to `centre` than `moved` is.
     fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let _ = (centre, needed);
         moved

@@ -31,7 +31,8 @@ const DETAIL_RANGE: [f64; 2] = [0.03, 0.15];
 const TOLERANCE: f64 = 0.6;
 
 /// A point that lands where it may not be goes back up the phase map in steps of this part of a
-/// spacing, at most a whole one: along an edge the points stay as far apart as relaxation put them.
+/// spacing (or of a pixel, if that is more), at most a whole one: along an edge the points stay as far
+/// apart as relaxation put them.
 const RETREATS: u32 = 16;
 
 /// If that does not help, it goes this much of the way from its tile's centre.
@@ -251,16 +252,21 @@ impl Importance for StippleMap {
             return moved;
         }
         let spacing = self.spacing(self.phase_at(centre));
-        let h = 0.5 * spacing;
+        // Far enough to see the next pixel from a border.
+        let h = (0.5 * spacing).max(0.75);
         let rise = |d: DVec2| self.phase_at(centre + d) - self.phase_at(centre - d);
         let gradient = DVec2::new(rise(DVec2::X * h), rise(DVec2::Y * h));
         let length = libm::sqrt(gradient.x * gradient.x + gradient.y * gradient.y);
         if length > 0.0 {
-            let step = gradient * (spacing / (f64::from(RETREATS) * length));
-            for i in 1..=RETREATS {
-                let p = moved + step * f64::from(i);
-                if allowed(p) {
-                    return p;
+            // Where points are denser than pixels, the next pixel is farther than the next point.
+            let step = gradient * (spacing.max(1.0) / (f64::from(RETREATS) * length));
+            // From its tile's centre only if relaxation took it too far down.
+            for from in [moved, centre] {
+                for i in 1..=RETREATS {
+                    let p = from + step * f64::from(i);
+                    if allowed(p) {
+                        return p;
+                    }
                 }
             }
         }
@@ -274,7 +280,7 @@ impl Importance for StippleMap {
     }
 
     fn longest_settling(&self) -> f64 {
-        self.largest_spacing
+        self.largest_spacing.max(1.0)
     }
 }
 

@@ -210,7 +210,9 @@ impl<I: Importance> Mover<'_, '_, I> {
         let most = if placement.tables().depth() < 3 { tiles_2 } else { tiles(3) };
         let per_tile =
             [0, 1, 2].map(|below| RECIPROCALS.get(level + below).copied().unwrap_or(0.0));
-        let moves = level + 1 >= usize::from(FIRST_RELAXED_LEVEL);
+        // Past this, a point is moved at all.
+        let least = tiles(usize::from(FIRST_RELAXED_LEVEL - 1).saturating_sub(level));
+        let least = if level + 1 < usize::from(FIRST_RELAXED_LEVEL) { least } else { 0.0 };
         let len = run.len().min(RUN);
         let (mut phases, mut details) = ([1.0f64; RUN], [0.0f64; RUN]);
         let (mut deep, mut other) = ([0u8; RUN], [0u8; RUN]);
@@ -224,7 +226,7 @@ impl<I: Importance> Mover<'_, '_, I> {
             let at = self.nearest(chunk.x[i], chunk.y[i]);
             (phases[k], details[k]) = self.phase(at, value, one_tile);
             deep[k] = u8::from(past_1) + u8::from(past_2);
-            other[k] = u8::from((threshold > most) | (chunk.entry[i] == 0) | !moves);
+            other[k] = u8::from((threshold > most) | (threshold <= least) | (chunk.entry[i] == 0));
         }
         let mut coefficients = [(0u16, 0u16); RUN];
         let mut turns = [0u8; RUN];
