@@ -241,11 +241,11 @@ impl<S: Scalar> Chunk<S> {
         };
         if !self.packed {
             let coefficients = block.rank_coefficients_of(self.first..self.first + len);
-            for ((keep, (a, b)), value) in self.keep.iter_mut().zip(coefficients).zip(&*values) {
+            for ((keep, (a, b)), value) in self.keep.iter_mut().zip(coefficients).zip(values) {
                 *keep = accepted(a, b, *value);
             }
         } else {
-            for ((keep, entry), value) in self.keep.iter_mut().zip(&self.entry).zip(&*values) {
+            for ((keep, entry), value) in self.keep.iter_mut().zip(&self.entry).zip(values) {
                 let (a, b) = block.rank_coefficients(usize::from(*entry));
                 *keep = accepted(a, b, *value);
             }
