@@ -6,6 +6,7 @@
 pub mod block;
 pub mod class;
 pub mod relaxation;
+mod relaxation_error;
 pub mod wire;
 
 use alloc::vec::Vec;
