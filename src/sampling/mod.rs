@@ -245,8 +245,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
     ///
     /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
     /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
-    /// (by 4 % and more), which is why [`weighted`](Self::weighted) refuses. Not progressive either: a point's place depends on the density around it.
-    /// Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
+    /// (by 4 % and more), which is why [`weighted`](Self::weighted) refuses. Not progressive either: a
+    /// point's place depends on the density around it. Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
     /// points stay at their centres.
     ///
     /// # Errors
@@ -407,7 +407,8 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// Writes positions into the caller's buffer, in the order of the walk, until it is full.
     /// Allocates nothing.
     ///
-    /// The fastest way: ground of constant importance is copied from the tables block by block.
+    /// The fastest way: ground of constant importance is copied from the tables block by block. For
+    /// relaxed points of a constant importance, from some 8,000 of them on, it takes 87 KB of stack.
     ///
     /// # Errors
     /// As [`visit`](Self::visit); the buffer then holds some of the points.

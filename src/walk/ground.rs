@@ -31,8 +31,8 @@ pub(crate) struct Ground<'a> {
     level: u8,
     /// Ranks below this are points.
     limit: u64,
-    /// By type, coordinate and entry: the vector in the frame of the block's tile, three levels above the point,
-    /// in edges of the point's level.
+    /// By type, coordinate and entry: the vector in the frame of the block's tile, three levels above
+    /// the point, in edges of the point's level.
     vectors: [[[f32; ENTRIES]; 2]; 4],
     known: [bool; 4],
 }

@@ -63,6 +63,7 @@ impl Turn {
     pub(crate) fn new(turn: u8) -> Self {
         const H: f32 = (0.5 * SQRT_3) as f32;
         const COSINES: [f32; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
+        // Of a power of two, so that no index is out of range.
         const TURNS: [Turn; 16] = {
             let mut turns = [Turn([1.0, 0.0]); 16];
             let mut k = 0;
@@ -286,7 +287,8 @@ impl<I: Importance> Mover<'_, '_, I> {
         }
     }
 
-    /// The step of any point of the chunk.
+    /// The step of any point of the chunk: a frontier tile's own centre, and centres of an opened tile's
+    /// children with points far below them.
     #[inline(never)]
     fn step<S: Scalar>(&self, chunk: &Chunk<S>, i: usize) -> [S; 2] {
         let Self { sampling, batch, kin, .. } = *self;
