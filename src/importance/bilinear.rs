@@ -28,6 +28,13 @@ impl BilinearMap {
         &self.map
     }
 
+    /// The region and half a pixel around it: a little more, for the rounding of `value`'s own
+    /// coordinates.
+    fn widened(&self, region: &Region) -> Region {
+        let reach = self.half_texel().max_element() * (1.0 + 1e-9);
+        Region { radius: region.radius + reach, ..*region }
+    }
+
     /// Half a pixel, in units.
     fn half_texel(&self) -> DVec2 {
         let (width, height) = self.map.size();
@@ -62,9 +69,12 @@ impl Importance for BilinearMap {
     /// The largest pixel whose centre is less than a pixel from the region: interpolation never
     /// exceeds the pixels it lies between.
     fn upper_bound(&self, region: &Region) -> f64 {
-        // A little more than half a pixel, for the rounding of `value`'s own coordinates.
-        let reach = self.half_texel().max_element() * (1.0 + 1e-9);
-        self.map.upper_bound(&Region { radius: region.radius + reach, ..*region })
+        self.map.upper_bound(&self.widened(region))
+    }
+
+    /// The smallest such pixel.
+    fn lower_bound(&self, region: &Region) -> f64 {
+        self.map.lower_bound(&self.widened(region))
     }
 
     /// Known over the map's own domain only: there each pixel's share is one pixel's area.

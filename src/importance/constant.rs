@@ -56,6 +56,10 @@ impl Importance for Constant {
         Some(self.0 * domain.area())
     }
 
+    fn lower_bound(&self, _region: &Region) -> f64 {
+        self.0
+    }
+
     fn is_constant(&self, _region: &Region) -> bool {
         true
     }

@@ -6,7 +6,7 @@ use core::fmt;
 use glam::DVec2;
 
 use super::lookup::Lattice;
-use super::pyramid::MaxPyramid;
+use super::pyramid::{Pyramid, Texels};
 use super::view::PixelView;
 use super::{Importance, pixels};
 use crate::domain::{Domain, Region};
@@ -94,12 +94,12 @@ impl core::error::Error for MapError {}
 /// An image as importance: each pixel's value holds over the pixel's whole half-open square.
 ///
 /// The image is stretched over a [`Domain`], by default [0, width) × [0, height): x to the right,
-/// y down, row by row. Outside its domain the nearest pixel counts. Keeps a max pyramid, a third of
-/// the pixels' memory.
+/// y down, row by row. Outside its domain the nearest pixel counts. Keeps pyramids of maxima and minima,
+/// two thirds of the pixels' memory.
 #[derive(Clone, Debug)]
 pub struct ImageMap {
     pixels: Vec<f32>,
-    pyramid: MaxPyramid,
+    pyramid: Pyramid,
     /// Σ of each row.
     row_sums: Vec<f64>,
     /// Σ of those.
@@ -139,7 +139,7 @@ impl ImageMap {
         let sum = pixels::sum(&row_sums);
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
-        let pyramid = MaxPyramid::new(&pixels, width, height);
+        let pyramid = Pyramid::new(&pixels, width, height);
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
         Ok(Self { pixels, pyramid, row_sums, sum, domain, lattice })
     }
@@ -264,11 +264,16 @@ impl Importance for ImageMap {
         f64::from(self.pixels[y * self.lattice.width + x])
     }
 
+    #[inline]
     fn upper_bound(&self, region: &Region) -> f64 {
-        let mut bound = [0.0];
-        let DVec2 { x, y } = region.centre;
-        self.upper_bounds(DVec2::ZERO, &[x], &[y], region.radius, &mut bound);
-        bound[0]
+        let (texels, low, high) = self.under(region);
+        f64::from(texels.max(low, high))
+    }
+
+    #[inline]
+    fn lower_bound(&self, region: &Region) -> f64 {
+        let (texels, low, high) = self.under(region);
+        f64::from(texels.min(low, high))
     }
 
     #[inline(always)]
@@ -299,6 +304,15 @@ impl Importance for ImageMap {
 }
 
 impl ImageMap {
+    /// The pyramid's texels of a size with the region, first and last columns and rows.
+    #[inline]
+    fn under(&self, region: &Region) -> (Texels<'_>, [u32; 2], [u32; 2]) {
+        let (mut low, mut high) = ([[0; 2]], [[0; 2]]);
+        let Region { centre: DVec2 { x, y }, radius } = *region;
+        let shift = self.lattice.spans(DVec2::ZERO, &[x], &[y], radius, &mut low, &mut high);
+        (self.pyramid.level(&self.pixels, self.lattice.width, shift), low[0], high[0])
+    }
+
     /// ∫ over any rectangle, pixel by pixel: O(pixels covered).
     fn integral_over(&self, domain: &Domain) -> f64 {
         // Edges of the pixels' cells along one axis; the border pixels reach to infinity.

@@ -42,6 +42,14 @@ pub trait Importance {
     /// in the domain. The closer, the less work; it may not be below.
     fn upper_bound(&self, region: &Region) -> f64;
 
+    /// A number that [`value`](Self::value) is not below anywhere in the part of `region` that lies in the
+    /// domain; as much of a promise as the upper bound, but not checked. Candidates that it admits need
+    /// no look at the importance. 0, not negative, where nothing better is known.
+    fn lower_bound(&self, region: &Region) -> f64 {
+        let _ = region;
+        0.0
+    }
+
     /// [`value`](Self::value) at each point `origin + (x[i], y[i])`, all of one length. Worth overriding
     /// where many at once are cheaper; the numbers must be the same.
     #[inline]
@@ -125,7 +133,11 @@ macro_rules! forward {
             (**self).upper_bound(region)
         }
 
-        #[inline]
+        fn lower_bound(&self, region: &Region) -> f64 {
+            (**self).lower_bound(region)
+        }
+
+        #[inline(always)]
         fn upper_bounds(
             &self,
             origin: DVec2,
@@ -174,7 +186,8 @@ macro_rules! forward {
 impl<I: Importance> Importance for &I {
     forward!();
 
-    #[inline]
+    // Always, here and above: what is not inlined into the walk is not compiled for its vectors.
+    #[inline(always)]
     fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
         (**self).values(origin, x, y, values);
     }

@@ -232,6 +232,10 @@ impl Importance for StippleMap {
         self.acceptance.upper_bound(region)
     }
 
+    fn lower_bound(&self, region: &Region) -> f64 {
+        self.acceptance.lower_bound(region)
+    }
+
     fn integral(&self, domain: &Domain) -> Option<f64> {
         self.acceptance.integral(domain)
     }

@@ -9,6 +9,7 @@ use glam::DVec2;
 
 use crate::clip::Clip;
 use crate::domain::{Domain, Region};
+use crate::effort::Effort;
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::points::{Filled, Points, Sample};
@@ -428,6 +429,15 @@ impl<'a, I: Importance> Sampling<'a, I> {
         let length = x.len().min(y.len());
         let (x, y) = (&mut x[..length], &mut y[..length]);
         walk::fill::fill(self, walk::fill::Columns::<S::Position> { x, y })
+    }
+
+    /// Counts what the walk does: how many tiles it visits and how many candidates it tests for the
+    /// points it makes. Costs a walk.
+    ///
+    /// # Errors
+    /// As [`visit`](Self::visit).
+    pub fn effort(&self) -> Result<Effort, SamplingError> {
+        Effort::of(self)
     }
 
     /// An iterator over the points. It holds its state (some 10 KiB) itself and allocates nothing.

@@ -16,8 +16,9 @@ pub(crate) struct Batch {
     pub(crate) end: usize,
     /// Every candidate lies in the clip.
     pub(crate) inside: bool,
-    /// Every candidate that lies in the domain is accepted.
-    pub(crate) all_accepted: bool,
+    /// Entries before this one are accepted wherever they lie in the clip: their ranks are below what
+    /// the lower bound of the importance admits. `end` or more: all of them.
+    pub(crate) certain: usize,
     /// The upper bound of the importance over the candidates.
     pub(crate) bound: f64,
 }
@@ -29,7 +30,7 @@ impl Batch {
         start: 0,
         end: 0,
         inside: false,
-        all_accepted: false,
+        certain: 0,
         bound: 0.0,
     };
 }
@@ -114,6 +115,12 @@ pub(crate) fn count_below(node: &Node, block: &BlockTable<'_>, levels: usize, li
 }
 
 impl Batch {
+    /// Where the run ends of which entry `start` is: the certain ones, or the others.
+    #[inline(always)]
+    pub(crate) fn run_end(&self, start: usize) -> usize {
+        if start < self.certain { self.certain.min(self.end) } else { self.end }
+    }
+
     /// The rank of entry `i`.
     #[inline(always)]
     pub(crate) fn rank(&self, block: &BlockTable<'_>, i: usize) -> u64 {

@@ -56,8 +56,8 @@ impl<S: Scalar> Chunk<S> {
         if self.packed { self.entry[i].into() } else { self.first + i }
     }
 
-    /// Takes the batch's entries from `start` on, as many as fit, and marks the points among them.
-    /// Returns the next entry.
+    /// Takes the batch's entries from `start` on, as many as fit and are certain alike, and marks the
+    /// points among them. Returns the next entry.
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
@@ -66,18 +66,20 @@ impl<S: Scalar> Chunk<S> {
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        let next = self.load(sampling.placement(), batch, start);
+        let certain = start < batch.certain;
+        let run = Batch { end: batch.run_end(start), ..*batch };
+        let next = self.load(sampling.placement(), &run, start);
         if batch.inside {
-            if batch.all_accepted {
+            if certain {
                 self.keep[..self.len].fill(1);
             }
         } else {
             self.mark_inside::<I, P>(walk);
-            if !batch.all_accepted {
+            if !certain {
                 self.pack();
             }
         }
-        if !batch.all_accepted {
+        if !certain {
             self.read_values(sampling);
             self.mark_accepted(sampling, batch)?;
         }

@@ -46,6 +46,14 @@ impl AnyTraversal {
         }
     }
 
+    /// How many more tiles the walk may visit.
+    pub(crate) fn tiles_left(&self) -> u64 {
+        match self {
+            Self::Fixed(traversal) => traversal.tiles_left(),
+            Self::Relaxed(traversal) => traversal.tiles_left(),
+        }
+    }
+
     /// The current batch of candidates.
     #[inline(always)]
     pub(crate) fn batch(&self) -> &Batch {

@@ -176,10 +176,12 @@ fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scala
     let mut next = batch.start;
     let room = output.room() - *written;
     // Nothing to test: straight from the tables into the buffer.
-    let all = batch.inside && batch.all_accepted && batch.end - next <= room;
+    let certain = batch.certain.min(batch.end);
+    let all = batch.inside && certain.saturating_sub(next) <= room;
     if all && (!K::RELAXED || steps.is_some()) {
-        while next < batch.end {
-            let (segment, end) = batch.segment(sampling.placement(), next, usize::MAX);
+        while next < certain {
+            let most = certain - next;
+            let (segment, end) = batch.segment(sampling.placement(), next, most);
             let centres = segment.positions();
             match steps {
                 None => output.write(*written, end - next, centres, to_caller),
@@ -190,7 +192,6 @@ fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scala
             *written += end - next;
             next = end;
         }
-        return Ok(true);
     }
     while next < batch.end {
         next = match steps {

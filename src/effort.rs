@@ -1,0 +1,45 @@
+//! What a walk costs, counted instead of timed.
+
+use glam::DVec2;
+
+use crate::clip::ToCaller;
+use crate::importance::Importance;
+use crate::sampling::{Sampling, SamplingError};
+use crate::walk::batch::Batch;
+use crate::walk::chunk::Chunk;
+use crate::walk::either::AnyTraversal;
+
+/// The work of one walk: the same on every machine. See [`Sampling::effort`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Tiles whose bound was looked at and that could hold a point, each visit of a tile counted;
+    /// what [`Limits::tiles`](crate::Limits::tiles) limits.
+    pub tiles: u64,
+    /// Points read from the tables.
+    pub candidates: u64,
+    /// Those of them that the importance's bounds do not decide, so that its value had to be read.
+    pub tested: u64,
+    /// Points of the set among them.
+    pub points: u64,
+}
+
+impl Effort {
+    /// Walks once, in double precision, and counts.
+    pub(crate) fn of<I: Importance>(sampling: &Sampling<'_, I>) -> Result<Self, SamplingError> {
+        let mut traversal = AnyTraversal::new(sampling);
+        let to_caller = ToCaller::new(&sampling.placement().domain())?;
+        let mut chunk = Chunk::new();
+        let (mut candidates, mut tested, mut points) = (0, 0, 0);
+        while traversal.advance(sampling)? {
+            let Batch { mut start, end, certain, .. } = *traversal.batch();
+            candidates += (end - start) as u64;
+            tested += (end - certain.clamp(start, end)) as u64;
+            while start < end {
+                start = traversal.select::<I, DVec2>(sampling, &to_caller, start, &mut chunk)?;
+                points += chunk.keep[..chunk.len].iter().map(|keep| u64::from(*keep)).sum::<u64>();
+            }
+        }
+        let tiles = sampling.limits().tiles - traversal.tiles_left();
+        Ok(Self { tiles, candidates, tested, points })
+    }
+}
