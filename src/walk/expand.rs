@@ -47,6 +47,7 @@ impl<K: Kinship> Open<K> {
     /// A child's own centre belongs to `node`'s batch. What is left below a level-(m + 1) child with
     /// rank r has ranks from N_{m+1} + r on, and its points are born at most `levels` − 1 levels below
     /// it, so near that a smaller disc than the child's whole subtree's holds them.
+    #[inline(always)]
     pub(crate) fn expand<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
@@ -112,6 +113,7 @@ impl<K: Kinship> Open<K> {
 }
 
 /// The centres of a node's children, by digit, relative to the domain's least corner.
+#[inline(always)]
 fn child_centres<'t, I: Importance>(sampling: &Sampling<'t, I>, node: &Node) -> Segment<'t, f64> {
     let placement = sampling.placement();
     let quarters = node.rotation / 3;

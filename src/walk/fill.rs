@@ -142,23 +142,23 @@ fn fill_from<K: Kinship, I: Importance, O: Output>(
     let to_caller = ToCaller::new(&sampling.placement().domain())?;
     let mut chunk = Chunk::new();
     let mut written = 0;
-    while traversal.advance(sampling)? {
-        let steps = match &mut ground {
-            Some(ground) => ground.steps(sampling.placement(), traversal.batch()),
-            None => None,
-        };
-        let complete = vectors.run(
-            #[inline(always)]
-            || {
+    vectors.run(
+        #[inline(always)]
+        || {
+            while traversal.advance(sampling)? {
+                let steps = match &mut ground {
+                    Some(ground) => ground.steps(sampling.placement(), traversal.batch()),
+                    None => None,
+                };
                 let output = (&mut output, &mut written);
-                emit(sampling, &traversal, steps, &to_caller, &mut chunk, output)
-            },
-        )?;
-        if !complete {
-            return Ok(Filled { written, complete });
-        }
-    }
-    Ok(Filled { written, complete: true })
+                let complete = emit(sampling, &traversal, steps, &to_caller, &mut chunk, output)?;
+                if !complete {
+                    return Ok(Filled { written, complete });
+                }
+            }
+            Ok(Filled { written, complete: true })
+        },
+    )
 }
 
 /// Writes the points of the current batch from index `written` on; `false` if there was no room for

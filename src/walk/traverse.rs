@@ -117,6 +117,7 @@ impl<K: Kinship> Traversal<K> {
     }
 
     /// Moves to the next batch of candidates; `false` at the end.
+    #[inline(always)]
     pub(crate) fn advance<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
@@ -204,6 +205,7 @@ impl<K: Kinship> Traversal<K> {
 
     /// Visits a tile whose own centre has had its turn: either all that can be accepted in it becomes
     /// one batch, or it is opened and the batch is its children's centres. `false` if nothing can be.
+    #[inline(always)]
     fn visit<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
