@@ -28,6 +28,8 @@ pub(crate) struct Open<K> {
     pub(crate) limits: [u64; MAX_CHILDREN],
     /// The child's upper bound.
     pub(crate) bounds: [f64; MAX_CHILDREN],
+    /// The mean of those.
+    pub(crate) mean_bound: f64,
 }
 
 impl<K: Kinship> Open<K> {
@@ -40,6 +42,7 @@ impl<K: Kinship> Open<K> {
         constant: 0,
         limits: [0; MAX_CHILDREN],
         bounds: [0.0; MAX_CHILDREN],
+        mean_bound: 0.0,
     };
 
     /// Opens `node`, of whose descendants those with a rank under `node_limit` can be accepted.
@@ -89,18 +92,26 @@ impl<K: Kinship> Open<K> {
         let (x, y, bounds) = (&x[..touching], &y[..touching], &mut bounds[..touching]);
         importance.upper_bounds(corner, x, y, radius, bounds);
 
+        self.mean_bound = bounds.iter().sum::<f64>() / bounds.len() as f64;
         let (tiles, before) = tile_counts(node.level);
         let tiles_below = tiles_at(node.level + 1);
+        let scale = sampling.scale();
         for (i, bound) in bounds.iter().enumerate() {
+            let digit = usize::from(digits[i]);
+            let (a, b) = block.rank_coefficients(digit);
+            let rank = node.rank + u64::from(a) * tiles - u64::from(b) * before;
+            let least = tiles_below.saturating_add(rank);
+            // A sieve that costs little: rounding keeps the order, so that no child is lost, and NaN goes
+            // on to be an error.
+            if scale.limit_before_rounding(*bound) < least as i64 as f64 && *bound >= 0.0 {
+                continue;
+            }
             let region = Region { centre: corner + DVec2::new(x[i], y[i]), radius };
             // No child has more than its parent, even where a bound that is no promise says so: the
             // disc above is made for the parent's limit.
             let limit = sampling.rank_limit_of_bound(*bound, &region)?.min(node_limit);
-            let digit = usize::from(digits[i]);
-            let (a, b) = block.rank_coefficients(digit);
-            let rank = node.rank + u64::from(a) * tiles - u64::from(b) * before;
             let bit = 1 << digit;
-            if limit > tiles_below.saturating_add(rank) {
+            if limit > least {
                 self.pending |= bit;
                 let region_of_points = Region { radius: wide, ..region };
                 self.inside |= if node_inside || clip.holds(&region_of_points) { bit } else { 0 };

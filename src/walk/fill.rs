@@ -210,15 +210,16 @@ fn emit<K: Kinship, I: Importance, S: Scalar, O: Output<Position: Position<Scala
 /// Appends the chunk's points; `false` if there was no room for all of them.
 #[inline(always)]
 fn append<S: Scalar, O: Output<Position: Position<Scalar = S>>>(
-    chunk: &Chunk<S>,
+    chunk: &mut Chunk<S>,
     output: &mut O,
     written: &mut usize,
     to_caller: &ToCaller<S>,
 ) -> bool {
-    let kept = chunk.keep[..chunk.len].iter().zip(&chunk.x).zip(&chunk.y);
-    let mut at = *written;
-    if output.room() - at >= chunk.len {
+    let room = output.room() - *written;
+    if room >= chunk.len {
+        let mut at = *written;
         // A rejected candidate is overwritten by the next one: no branch depends on the data.
+        let kept = chunk.keep[..chunk.len].iter().zip(&chunk.x).zip(&chunk.y);
         for ((keep, x), y) in kept {
             output.set(at, to_caller.place(*x, *y));
             at += usize::from(*keep);
@@ -226,14 +227,10 @@ fn append<S: Scalar, O: Output<Position: Position<Scalar = S>>>(
         *written = at;
         return true;
     }
-    for ((_, x), y) in kept.filter(|((keep, _), _)| **keep == 1) {
-        if at == output.room() {
-            *written = at;
-            return false;
-        }
-        output.set(at, to_caller.place(*x, *y));
-        at += 1;
-    }
-    *written = at;
-    true
+    chunk.pack();
+    let len = chunk.len.min(room);
+    let points = chunk.x[..len].iter().zip(&chunk.y).map(|(x, y)| [*x, *y]);
+    output.write(*written, len, points, to_caller);
+    *written += len;
+    chunk.len <= room
 }

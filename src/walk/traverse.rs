@@ -35,6 +35,12 @@ const WORTH_A_BOUND: usize = 32;
 /// texture, by 2 elsewhere), from 400 to 1600 it changes by less than a tenth.
 const FEW: usize = 800;
 
+/// How far above the mean bound of a tile and its siblings its own is where importance has a peak.
+const PEAK: f64 = 2.0;
+
+/// The same at a peak, where the bounds of tiles below differ and save more.
+const FEW_AT_PEAK: usize = 130;
+
 /// The same for a tile across the clip's border, where candidates may be in vain and cost more.
 const FEW_AT_BORDER: usize = 200;
 
@@ -55,6 +61,8 @@ pub(crate) struct Traversal<K> {
     /// The tile being visited and its candidates, built in place.
     batch: Batch,
     kinship: K,
+    /// Whether the tile's bound is well above its siblings'.
+    peak: bool,
 }
 
 impl<K: Kinship> Traversal<K> {
@@ -68,6 +76,7 @@ impl<K: Kinship> Traversal<K> {
             tiles_left: sampling.limits().tiles,
             batch: Batch::EMPTY,
             kinship: K::NONE,
+            peak: false,
         }
     }
 
@@ -164,6 +173,7 @@ impl<K: Kinship> Traversal<K> {
             self.batch.node = open.node.child(tables, digit, tiles, before)?;
             self.kinship = open.kinship.child(&open.node, digit, &self.batch.node);
             self.batch.bound = open.bounds[digit];
+            self.peak = open.bounds[digit] > PEAK * open.mean_bound;
             self.batch.inside = open.inside & bit != 0;
             self.batch.certain = if open.constant & bit != 0 { usize::MAX } else { 0 };
             return Some(open.limits[digit]);
@@ -197,6 +207,7 @@ impl<K: Kinship> Traversal<K> {
         self.batch.node = *node;
         self.kinship = K::frontier(placement.tables(), node);
         self.batch.bound = bound;
+        self.peak = true;
         self.batch.inside = self.clip.holds(&region_of_points);
         let constant = sampling.importance().is_constant(&region);
         self.batch.certain = if constant { usize::MAX } else { 0 };
@@ -257,7 +268,7 @@ impl<K: Kinship> Traversal<K> {
                 // Whole blocks, whose vectors are looked up together.
                 (true, false) if K::RELAXED => true,
                 (_, false) => end <= FEW_AT_BORDER,
-                (_, true) => end - certain <= FEW,
+                (_, true) => end - certain <= if self.peak { FEW_AT_PEAK } else { FEW },
             };
             if levels == 1 || few {
                 let taken = share.is_none_or(|share| share.take(end as u64, self.depth));
