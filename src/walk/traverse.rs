@@ -52,8 +52,10 @@ const KIN_LEVELS: u8 = 3;
 pub(crate) struct Traversal<K> {
     open: [Open<K>; OPEN],
     depth: usize,
-    /// Twice the number of frontier tiles begun, less one if only its centre was.
+    /// The number of frontier tiles begun.
     frontier: usize,
+    /// Of the last one, if only its centre has had its turn: how many ranks its bound admits.
+    begun: Option<u64>,
     clip: Clip,
     /// The part of the walk that is taken; `None` for all of it.
     share: Option<Share>,
@@ -71,6 +73,7 @@ impl<K: Kinship> Traversal<K> {
             open: [Open::CLOSED; OPEN],
             depth: 0,
             frontier: 0,
+            begun: None,
             clip: sampling.clip(),
             share: sampling.share(),
             tiles_left: sampling.limits().tiles,
@@ -134,20 +137,21 @@ impl<K: Kinship> Traversal<K> {
         loop {
             let limit = if let Some(limit) = self.next_child(sampling) {
                 limit
+            } else if let Some(limit) = self.begun.take() {
+                limit
             } else {
-                let Some(node) = sampling.placement().frontier_node(self.frontier / 2) else {
+                let Some(node) = sampling.placement().frontier_node(self.frontier) else {
                     return Ok(false);
                 };
                 self.frontier += 1;
-                let Some(limit) = self.enter_frontier(sampling, node)? else { continue };
-                if self.frontier % 2 == 1 {
+                self.begun = self.enter_frontier(sampling, node)?;
+                if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
                     if self.share.as_mut().is_none_or(|share| share.take(1, 0)) {
                         return Ok(true);
                     }
-                    continue;
                 }
-                limit
+                continue;
             };
             if self.visit(sampling, limit)? {
                 return Ok(true);
