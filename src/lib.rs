@@ -90,6 +90,7 @@ pub mod tiling;
 mod walk;
 
 pub use domain::{Domain, DomainError, Region};
+pub use effort::Effort;
 pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
 pub use importance::{
     BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData,
@@ -100,7 +101,6 @@ pub use parallel::Shards;
 pub use placement::Placement;
 pub use points::{Filled, Points, Sample};
 pub use relaxed::RelaxationTable;
-pub use effort::Effort;
 pub use sampling::{Amount, Limits, Sampling, SamplingError};
 pub use tables::{BlockTable, Tables, TablesError};
 pub use walk::scalar::{Coordinate, Position, Scalar};

@@ -194,35 +194,41 @@ impl ImageMap {
         if view.width == 0 || view.height == 0 {
             return Ok(());
         }
-        for row in 0..view.height {
-            let pixels = view.unchecked_row(row);
-            if let Some((column, value)) = pixels.and_then(|p| pixels::first_refused(p, invalid)) {
-                return Err(MapError::InvalidPixel { x: x + column, y: y + row, value });
-            }
-        }
         Vectors::detect().run(
             #[inline(always)]
-            || self.replace(x, y, view, invalid),
-        );
-        Ok(())
+            || {
+                for row in 0..view.height {
+                    let Some(pixels) = view.unchecked_row(row) else { break };
+                    if let Some((column, value)) = pixels::first_refused(pixels, invalid) {
+                        return Err(MapError::InvalidPixel { x: x + column, y: y + row, value });
+                    }
+                }
+                self.replace(x, y, view, invalid);
+                Ok(())
+            },
+        )
     }
 
     /// [`update_at`](Self::update_at) when the view fits and no pixel is refused.
     #[inline(always)]
     fn replace(&mut self, x: usize, y: usize, view: &PixelView<'_>, invalid: InvalidPixels) {
         let (width, height) = self.size();
-        for row in 0..view.height {
-            let whole = &mut self.pixels[(y + row) * width..][..width];
-            let part = &mut whole[x..x + view.width];
-            view.copy_row(row, part);
-            if invalid != InvalidPixels::Reject {
-                pixels::replace(part);
+        let (columns, rows) = (x..x + view.width, y..y + view.height);
+        // Two rows at a time, all that is to be done with them while they are in the cache.
+        for pair in rows.start / 2..rows.end.div_ceil(2) {
+            for row in (2 * pair).max(rows.start)..(2 * pair + 2).min(rows.end) {
+                let whole = &mut self.pixels[row * width..][..width];
+                let part = &mut whole[columns.clone()];
+                view.copy_row(row - rows.start, part);
+                if invalid != InvalidPixels::Reject {
+                    pixels::replace(part);
+                }
+                self.row_sums[row] = pixels::sum(whole);
             }
-            self.row_sums[y + row] = pixels::sum(whole);
+            self.pyramid.reduce_pixels(&self.pixels, (width, height), pair, &columns);
         }
         self.sum = pixels::sum(&self.row_sums);
-        let high = [x + view.width - 1, y + view.height - 1];
-        self.pyramid.update(&self.pixels, (width, height), [x, y], high);
+        self.pyramid.reduce_above(&columns, &rows);
     }
 
     /// The rectangle that the image covers.

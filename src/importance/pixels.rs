@@ -3,7 +3,7 @@
 use super::InvalidPixels;
 
 /// Whether all are finite and not negative. One pass, no branch a pixel.
-#[inline]
+#[inline(always)]
 pub(super) fn are_valid(row: &[f32]) -> bool {
     row.iter().fold(true, |all, v| all & (*v >= 0.0) & (*v < f32::INFINITY))
 }
@@ -18,7 +18,7 @@ fn counts_as_zero(value: f32, invalid: InvalidPixels) -> bool {
 }
 
 /// The first column that the policy does not admit, and its value.
-#[inline]
+#[inline(always)]
 pub(super) fn first_refused(row: &[f32], invalid: InvalidPixels) -> Option<(usize, f32)> {
     if are_valid(row) {
         return None;

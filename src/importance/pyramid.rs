@@ -1,6 +1,10 @@
 //! Pyramids of extremes: the largest and the smallest pixel of any square block, from a few reads.
 
 use alloc::vec::Vec;
+use core::ops::Range;
+
+/// Texels reduced in one pass.
+const RUN: usize = 256;
 
 /// Levels 1, 2, … of maxima and minima over 2×2, 4×4, … pixels, down to one texel. Level 0, the
 /// pixels, stays with its owner. Odd sizes round up: the last texel of a level covers what is left.
@@ -30,41 +34,46 @@ impl Pyramid {
         }
         let texels = alloc::vec![0.0; total];
         let mut pyramid = Self { greatest: texels.clone(), least: texels, levels };
-        pyramid.update(pixels, (width, height), [0, 0], [width - 1, height - 1]);
+        for y in 0..height.div_ceil(2) {
+            pyramid.reduce_pixels(pixels, (width, height), y, &(0..width));
+        }
+        pyramid.reduce_above(&(0..width), &(0..height));
         pyramid
     }
 
-    /// Recomputes what depends on the pixels in columns `low[0]`..=`high[0]` and rows
-    /// `low[1]`..=`high[1]`: their number and a third, and a few texels a level.
+    /// Recomputes row `y` of level 1 where it depends on the pixels in `columns`, from two rows of
+    /// pixels at the most.
     #[inline(always)]
-    pub(super) fn update(
+    pub(super) fn reduce_pixels(
         &mut self,
         pixels: &[f32],
-        (mut source_width, mut source_height): (usize, usize),
-        mut low: [usize; 2],
-        mut high: [usize; 2],
+        size: (usize, usize),
+        y: usize,
+        columns: &Range<usize>,
     ) {
-        for i in 0..self.levels.len() {
-            (low, high) = (low.map(|i| i / 2), high.map(|i| i / 2));
-            let level = self.levels[i];
+        let Some(level) = self.levels.first() else { return };
+        let columns = columns.start / 2..(columns.end - 1) / 2 + 1;
+        level.reduce_row(pixels, size, y, &columns, &mut self.greatest, larger);
+        level.reduce_row(pixels, size, y, &columns, &mut self.least, smaller);
+    }
+
+    /// Recomputes what depends on the pixels in these columns and rows from level 2 on, when level 1 is
+    /// as it should be: a third of that level, and a few texels a level.
+    #[inline(always)]
+    pub(super) fn reduce_above(&mut self, columns: &Range<usize>, rows: &Range<usize>) {
+        for i in 1..self.levels.len() {
+            let (source, level) = (self.levels[i - 1], self.levels[i]);
+            let covered =
+                |pixels: &Range<usize>| pixels.start >> (i + 1)..((pixels.end - 1) >> (i + 1)) + 1;
+            let (columns, rows) = (covered(columns), covered(rows));
+            let size = (source.width, source.height);
             let (greatest, to_greatest) = self.greatest.split_at_mut(level.start);
             let (least, to_least) = self.least.split_at_mut(level.start);
-            let (greatest, least) = match i.checked_sub(1) {
-                None => (pixels, pixels),
-                Some(i) => (&greatest[self.levels[i].start..], &least[self.levels[i].start..]),
-            };
-            let columns = low[0]..high[0] + 1;
-            let source_columns = 2 * columns.start..(2 * columns.end).min(source_width);
-            for y in low[1]..=high[1] {
-                let rows = [2 * y, (2 * y + 1).min(source_height - 1)];
-                let of = |source| rows.map(|y| &row(source, source_width, y)[source_columns.clone()]);
-                let target = y * level.width..(y + 1) * level.width;
-                let to_greatest = &mut to_greatest[target.clone()][columns.clone()];
-                let to_least = &mut to_least[target][columns.clone()];
-                reduce_rows(of(greatest), to_greatest, larger);
-                reduce_rows(of(least), to_least, smaller);
+            for y in rows {
+                let greatest = &greatest[source.start..];
+                level.reduce_row(greatest, size, y, &columns, to_greatest, larger);
+                level.reduce_row(&least[source.start..], size, y, &columns, to_least, smaller);
             }
-            (source_width, source_height) = (level.width, level.height);
         }
     }
 
@@ -79,6 +88,42 @@ impl Pyramid {
                 let (greatest, least) = (&self.greatest[texels.clone()], &self.least[texels]);
                 Texels { greatest, least, width }
             }
+        }
+    }
+}
+
+impl Level {
+    /// Reduces two rows of the level below, `size`, to row `y` of this one, `texels` from its start on,
+    /// in some columns.
+    #[inline(always)]
+    fn reduce_row(
+        &self,
+        source: &[f32],
+        (width, height): (usize, usize),
+        y: usize,
+        columns: &Range<usize>,
+        texels: &mut [f32],
+        further: impl Fn(f32, f32) -> f32 + Copy,
+    ) {
+        let source_columns = 2 * columns.start..(2 * columns.end).min(width);
+        let above = &row(source, width, 2 * y)[source_columns.clone()];
+        let below = &row(source, width, (2 * y + 1).min(height - 1))[source_columns];
+        let target = &mut texels[y * self.width..][columns.clone()];
+        // First two rows to one, then two columns: half as many texels are moved between lanes.
+        let mut run = [0.0f32; RUN];
+        let runs = above.chunks(RUN).zip(below.chunks(RUN)).zip(target.chunks_mut(RUN / 2));
+        for ((above, below), target) in runs {
+            let run = &mut run[..above.len()];
+            for ((extreme, a), b) in run.iter_mut().zip(above).zip(below) {
+                *extreme = further(*a, *b);
+            }
+            let (pairs, odd) = run.as_chunks::<2>();
+            let (of_pairs, of_odd) = target.split_at_mut(pairs.len());
+            for (extreme, [a, b]) in of_pairs.iter_mut().zip(pairs) {
+                *extreme = further(*a, *b);
+            }
+            // The last block of an odd row is 1 wide.
+            of_odd.copy_from_slice(odd);
         }
     }
 }
@@ -136,20 +181,6 @@ fn larger(a: f32, b: f32) -> f32 {
 #[inline(always)]
 fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
-}
-
-/// Extremes of 2×2 blocks of two rows; the last block of an odd row is 1 wide.
-#[inline(always)]
-fn reduce_rows([row, below]: [&[f32]; 2], target: &mut [f32], further: impl Fn(f32, f32) -> f32) {
-    let (pairs, odd) = row.as_chunks::<2>();
-    let (pairs_below, odd_below) = below.as_chunks::<2>();
-    let (target_pairs, target_odd) = target.split_at_mut(pairs.len());
-    for ((t, [a, b]), [c, d]) in target_pairs.iter_mut().zip(pairs).zip(pairs_below) {
-        *t = further(further(*a, *b), further(*c, *d));
-    }
-    if let ([t], [a], [b]) = (target_odd, odd, odd_below) {
-        *t = further(*a, *b);
-    }
 }
 
 #[cfg(test)]

@@ -25,14 +25,8 @@ pub(crate) struct Batch {
 
 impl Batch {
     /// No candidates.
-    pub(crate) const EMPTY: Self = Self {
-        node: Node::root(),
-        start: 0,
-        end: 0,
-        inside: false,
-        certain: 0,
-        bound: 0.0,
-    };
+    pub(crate) const EMPTY: Self =
+        Self { node: Node::root(), start: 0, end: 0, inside: false, certain: 0, bound: 0.0 };
 }
 
 /// N_m of a level, under the root `a`.

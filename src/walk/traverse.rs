@@ -297,11 +297,7 @@ impl<K: Kinship> Traversal<K> {
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
 /// importance is there, between its bounds.
-fn certain_below<I: Importance>(
-    sampling: &Sampling<'_, I>,
-    node: &Node,
-    levels: usize,
-) -> usize {
+fn certain_below<I: Importance>(sampling: &Sampling<'_, I>, node: &Node, levels: usize) -> usize {
     let placement = sampling.placement();
     let centre = placement.domain().min() + placement.centre(node);
     let region = Region { centre, radius: placement.reach(node.level, levels) };
