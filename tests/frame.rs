@@ -19,6 +19,7 @@ fn assert_same(updated: &ImageMap, pixels: &[f32]) {
                 let centre = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let region = Region { centre, radius };
                 assert_eq!(updated.upper_bound(&region), fresh.upper_bound(&region));
+                assert_eq!(updated.lower_bound(&region), fresh.lower_bound(&region));
             }
         }
     }
@@ -131,6 +132,8 @@ fn a_bound_misses_no_pixel_and_sees_none_far_away() {
         for hot in 0..width * height {
             let mut pixels = vec![0.0f32; width * height];
             pixels[hot] = 1.0;
+            let negative = pixels.iter().map(|pixel| 1.0 - pixel).collect();
+            let negative = ImageMap::new(width, height, negative, InvalidPixels::Reject).unwrap();
             let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap();
             // The nearest point of the hot pixel's square to a disc's centre.
             let low = glam::DVec2::new((hot % width) as f64, (hot / width) as f64);
@@ -138,7 +141,9 @@ fn a_bound_misses_no_pixel_and_sees_none_far_away() {
                 let place = |step: usize, size: usize| (i * step % 64) as f64 / 64.0 * size as f64;
                 let centre = glam::DVec2::new(place(1, width), place(27, height));
                 for radius in [0.01, 0.6, 1.0, 2.3, 9.0, 70.0] {
-                    let bound = map.upper_bound(&Region { centre, radius });
+                    let region = Region { centre, radius };
+                    let bound = map.upper_bound(&region);
+                    assert_eq!(negative.lower_bound(&region), 1.0 - bound);
                     let away = centre.distance(centre.clamp(low, low + 1.0));
                     assert!(away >= radius || bound == 1.0);
                     // A square of side 2r, widened to texels of at most 2r or one pixel each side.

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Position,
-    Probed, Sample, Sampling, SamplingError, Scalar, Tables, bake,
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Placement, Position, Probed,
+    Region, Sample, Sampling, SamplingError, Scalar, Tables, bake,
 };
 
 /// Rank and the bits of the coordinates.
@@ -220,17 +220,67 @@ fn a_part_that_does_not_exist_is_an_error() {
 fn a_clip_costs_in_proportion_to_its_points() {
     let map = map(512, 512, 3.0, 8);
     let placement = Placement::new(map.domain(), 3);
-    let sampling = Sampling::new(&placement, &map, Amount::Points(1_000_000.0)).unwrap();
-    // A thousandth of the area must not need a hundredth of the tiles.
+    // A thousandth of the area must not need a fiftieth of the work.
     let rectangle = Domain::new(DVec2::new(200.0, 100.0), DVec2::splat(16.0)).unwrap();
-    let tiles_enough = |tiles: u64, clip: Option<Domain>| {
-        let limits = Limits { tiles, ..Limits::default() };
-        let sampling =
-            Sampling::with_limits(&placement, &map, Amount::Points(1e6), limits).unwrap();
-        let sampling = clip.map_or(sampling, |clip| sampling.clipped(clip));
-        sampling.points::<Vec2>().unwrap().all(|sample| sample.is_ok())
-    };
-    assert!(sampling.clipped(rectangle).points::<Vec2>().unwrap().count() > 500);
-    let whole = (0..40).map(|i| 1 << i).find(|tiles| tiles_enough(*tiles, None)).unwrap();
-    assert!(tiles_enough(whole / 100, Some(rectangle)), "{whole}");
+    for relaxed in [false, true] {
+        let whole = Sampling::new(&placement, &map, Amount::Points(1_000_000.0)).unwrap();
+        let whole = if relaxed { whole.relaxed().unwrap() } else { whole };
+        let (part, whole) = (whole.clipped(rectangle).effort(), whole.effort());
+        let (part, whole) = (part.unwrap(), whole.unwrap());
+        assert!(part.points > 500, "{part:?}");
+        assert!(50 * part.tiles < whole.tiles, "{part:?} {whole:?}");
+        assert!(50 * part.candidates < whole.candidates, "{part:?} {whole:?}");
+    }
+}
+
+/// A map that does not tell how small it is.
+struct WithoutLowerBound<'a>(&'a ImageMap);
+
+impl Importance for WithoutLowerBound<'_> {
+    fn value(&self, at: DVec2) -> f64 {
+        self.0.value(at)
+    }
+
+    fn upper_bound(&self, region: &Region) -> f64 {
+        self.0.upper_bound(region)
+    }
+
+    fn integral(&self, domain: &Domain) -> Option<f64> {
+        self.0.integral(domain)
+    }
+}
+
+#[test]
+fn lower_bounds_save_tests_and_change_nothing_else() {
+    let smooth: Vec<f32> =
+        (0..64 * 64).map(|i| 1.0 + (i % 64 * (i / 64)) as f32 / 4096.0).collect();
+    let smooth = ImageMap::new(64, 64, smooth, InvalidPixels::Reject).unwrap();
+    for (map, saves) in [(smooth, true), (map(90, 70, 9.0, 4), false)] {
+        let domain = Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap();
+        let map = map.over(domain);
+        let placement = Placement::new(domain, 7);
+        let inner = rectangle_in(&domain, [0.2, 0.3, 0.9, 0.6]);
+        let hidden = WithoutLowerBound(&map);
+        for (count, clip) in [(300.0, domain), (20_000.0, domain), (200_000.0, inner)] {
+            let amount = Amount::Points(count);
+            let told = Sampling::new(&placement, &map, amount).unwrap().clipped(clip);
+            let untold = Sampling::new(&placement, &hidden, amount).unwrap().clipped(clip);
+            // The order may differ where larger blocks are taken at once.
+            assert_eq!(sorted::<Vec2, _>(&told), sorted::<Vec2, _>(&untold));
+            let all = points::<Vec2, _>(&told);
+            let mut buffer = vec![Vec2::ZERO; all.len()];
+            assert_eq!(told.fill(&mut buffer).unwrap().written, all.len());
+            let bits = |v: f32| f64::from(v).to_bits();
+            assert!(
+                all.iter().zip(&buffer).all(|((_, x, y), p)| (*x, *y) == (bits(p.x), bits(p.y)))
+            );
+            let (told, untold) = (told.effort().unwrap(), untold.effort().unwrap());
+            assert_eq!((told.points, untold.points), (all.len() as u64, all.len() as u64));
+            assert_eq!(untold.tested, untold.candidates);
+            assert!(told.tested <= untold.tested, "{told:?} {untold:?}");
+            if saves && count > 10_000.0 {
+                assert!(2 * told.tested < untold.tested, "{told:?} {untold:?}");
+            }
+        }
+    }
 }
