@@ -12,6 +12,9 @@ use crate::tiling::Digits;
 /// Points whose vectors are looked up in one go.
 pub(crate) const RUN: usize = 64;
 
+/// Slots that are found by comparing with each.
+const FEW_SLOTS: usize = 4;
+
 /// Relaxed offsets: vectors by structural class and density phase, that turn the fixed centres of any
 /// density into an even set. See [`Relaxation`] for what they mean; this is the same, read in place.
 #[derive(Clone, Copy, Debug)]
@@ -259,15 +262,37 @@ impl<'a> LayerTable<'a> {
     ) -> [[f32; RUN]; 2] {
         let (mut a, mut b) = ([[0u8; 2]; RUN], [[0u8; 2]; RUN]);
         let (mut a_scale, mut b_scale, mut shares) = ([0.0f32; RUN], [0.0f32; RUN], [0.0f32; RUN]);
-        for i in 0..len.min(RUN) {
-            if let Some(Phase { first, share }) = self.phase(tau[i]) {
-                let entries = self.entries(first, &|generations| class(i, generations));
+        let len = len.min(RUN);
+        if let Some(first) = self.few_slots(&tau[..len]) {
+            // Where the density varies little, a few slots serve all: decoded once, and found by
+            // comparing.
+            let records: [SlotRecord; FEW_SLOTS + 1] =
+                core::array::from_fn(|i| self.record((first + i).min(self.slots.len() - 1)));
+            let mut slots = [0u64; RUN];
+            for record in &records[1..FEW_SLOTS] {
+                let begin = f64::from(record.tau);
+                for (slot, tau) in slots.iter_mut().zip(tau) {
+                    *slot += u64::from(begin <= *tau);
+                }
+            }
+            for i in 0..len {
+                let slot = (slots[i] as usize).min(FEW_SLOTS - 1);
+                let (before, after) = (&records[slot], &records[slot + 1]);
+                let entries = self.entries_of((before, after), first + slot, &|g| class(i, g));
                 [(a[i], a_scale[i]), (b[i], b_scale[i])] = entries.map(|e| (e.units, e.scale));
-                shares[i] = share;
+                shares[i] = (tau[i] - f64::from(before.tau)) as f32 * before.per_phase;
+            }
+        } else {
+            for i in 0..len {
+                if let Some(Phase { first, share }) = self.phase(tau[i]) {
+                    let entries = self.entries(first, &|generations| class(i, generations));
+                    [(a[i], a_scale[i]), (b[i], b_scale[i])] = entries.map(|e| (e.units, e.scale));
+                    shares[i] = share;
+                }
             }
         }
         let [mut x, mut y] = [[0.0; RUN]; 2];
-        for i in 0..len.min(RUN) {
+        for i in 0..len {
             let mix = |a: f32, b: f32| a + (b - a) * shares[i];
             let [ax, ay] = a[i].map(|v| f32::from(v as i8) * a_scale[i]);
             let [bx, by] = b[i].map(|v| f32::from(v as i8) * b_scale[i]);
@@ -276,21 +301,42 @@ impl<'a> LayerTable<'a> {
         [x, y]
     }
 
+    /// The first slot that some of the phases read, if all of them lie between slots and read this one
+    /// or one of the next [`FEW_SLOTS`] − 1.
+    #[inline(always)]
+    fn few_slots(&self, tau: &[f64]) -> Option<usize> {
+        let [low, high] = tau.iter().fold([f64::MAX, 0.0], |[low, high], tau| {
+            [if *tau < low { *tau } else { low }, if *tau > high { *tau } else { high }]
+        });
+        let (low, high) = (self.phase(low)?.first, self.phase(high)?.first);
+        (high < low + FEW_SLOTS).then_some(low)
+    }
+
     /// As [`Layer::entry`], of the slot `first` and the next one.
     #[inline(always)]
     fn entries(&self, first: usize, class: &impl Fn(u32) -> u32) -> [Entry; 2] {
-        let (before, after) = (self.record(first), self.record(first + 1));
+        self.entries_of((&self.record(first), &self.record(first + 1)), first, class)
+    }
+
+    /// The same with the records of both slots at hand.
+    #[inline(always)]
+    fn entries_of(
+        &self,
+        (before, after): (&SlotRecord, &SlotRecord),
+        first: usize,
+        class: &impl Fn(u32) -> u32,
+    ) -> [Entry; 2] {
         let number = class(before.generations);
         let a = match first {
             0 => Entry::ZERO,
-            _ if number < before.count => self.entry(&before, number),
+            _ if number < before.count => self.entry(before, number),
             _ => self.entry_later(class, first + 1),
         };
         // Most often as many generations.
         let number =
             if after.generations == before.generations { number } else { class(after.generations) };
         let b = match number < after.count {
-            true => self.entry(&after, number),
+            true => self.entry(after, number),
             false => self.entry_later(class, first + 2),
         };
         [a, b]
