@@ -2,8 +2,10 @@
 
 use glam::DVec2;
 
+use super::interpolation::{Grid, RUN};
 use super::{ImageMap, Importance};
 use crate::domain::{Domain, Region};
+use crate::walk::scalar::Scalar;
 
 /// An [`ImageMap`] read bilinearly: each pixel's value holds at its centre, and between four centres the
 /// importance is interpolated. Beyond the outermost centres the border pixels continue.
@@ -40,30 +42,34 @@ impl BilinearMap {
         let (width, height) = self.map.size();
         0.5 * self.map.domain().size() / DVec2::new(width as f64, height as f64)
     }
-}
 
-/// The pixel before a coordinate (in pixels, centres at integers), the one after, and the part of
-/// the way between them, in 0..=1.
-fn between(coordinate: f64, count: usize) -> (usize, usize, f64) {
-    let last = count - 1;
-    // `as` takes negative numbers to 0; so does the clamp of the fraction.
-    let before = (coordinate as usize).min(last);
-    let fraction = (coordinate - before as f64).clamp(0.0, 1.0);
-    (before, (before + 1).min(last), fraction)
+    fn grid(&self) -> Grid {
+        let (width, height) = self.map.size();
+        let min = self.map.domain().min();
+        Grid { width, height, min, texel: 2.0 * self.half_texel() }
+    }
 }
 
 impl Importance for BilinearMap {
     fn value(&self, at: DVec2) -> f64 {
-        let (width, height) = self.map.size();
-        let centred = (at - self.map.domain().min()) / (2.0 * self.half_texel()) - 0.5;
-        let (x0, x1, s) = between(centred.x, width);
-        let (y0, y1, t) = between(centred.y, height);
-        let pixel = |x, y| f64::from(self.map.pixels()[y * width + x]);
-        let [a, b, c, d] = [pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1)];
-        let above = a + s * (b - a);
-        let below = c + s * (d - c);
-        // Rounding may carry the sum an ulp past the pixels it lies between.
-        (above + t * (below - above)).clamp(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        self.grid().value(self.map.pixels(), at)
+    }
+
+    #[inline(always)]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
+        let (grid, pixels) = (self.grid(), self.map.pixels());
+        for ((x, y), values) in x.chunks(RUN).zip(y.chunks(RUN)).zip(values.chunks_mut(RUN)) {
+            let points =
+                x.iter().zip(y).map(|(x, y)| [origin.x + x.to_f64(), origin.y + y.to_f64()]);
+            match grid.cells(points.clone()) {
+                Some(cells) => cells.read(pixels, values),
+                None => {
+                    for (value, at) in values.iter_mut().zip(points) {
+                        *value = grid.value(pixels, DVec2::from(at));
+                    }
+                }
+            }
+        }
     }
 
     /// The largest pixel whose centre is less than a pixel from the region: interpolation never

@@ -144,20 +144,20 @@ impl Lattice {
 
 /// 2⁵²: from here to 2⁵³ the `f64` are the integers, so that adding it to a smaller number rounds that to
 /// an integer, which the lowest bits then hold.
-const INTEGERS: f64 = 4_503_599_627_370_496.0;
+pub(super) const INTEGERS: f64 = 4_503_599_627_370_496.0;
 
 /// The same for `f32`: 2²³.
 const INTEGERS_SINGLE: f32 = 8_388_608.0;
 
 /// ⌊t⌋ clamped to 0..=last, `last` an integer below 2³²; 0 for NaN.
 #[inline(always)]
-fn floor_within(t: f64, last: f64) -> f64 {
+pub(super) fn floor_within(t: f64, last: f64) -> f64 {
     floor(clamp(t, last))
 }
 
 /// t clamped to 0..=last, 0 for NaN.
 #[inline(always)]
-fn clamp(t: f64, last: f64) -> f64 {
+pub(super) fn clamp(t: f64, last: f64) -> f64 {
     let t = if t > 0.0 { t } else { 0.0 };
     if t < last { t } else { last }
 }

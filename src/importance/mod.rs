@@ -7,6 +7,7 @@
 mod bilinear;
 mod constant;
 mod function;
+mod interpolation;
 mod lookup;
 mod map;
 mod pixels;
@@ -92,6 +93,17 @@ pub trait Importance {
         0.0
     }
 
+    /// [`local`](Self::local) and [`detail`](Self::detail) at each point (x[i], y[i]), all of one length;
+    /// `local` holds the importance at each when it is called. Worth overriding where many at once are
+    /// cheaper; the numbers must be the same.
+    #[inline]
+    fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
+        for (((x, y), local), detail) in x.iter().zip(y).zip(local).zip(detail) {
+            let at = DVec2::new(*x, *y);
+            (*local, *detail) = (self.local(at, *local), self.detail(at));
+        }
+    }
+
     /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
     /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
     /// their side. Not farther from `moved`, or from `centre`, than
@@ -99,6 +111,14 @@ pub trait Importance {
     fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let _ = (centre, needed);
         moved
+    }
+
+    /// 1 for each point (x[i], y[i]) that [`settle`](Self::settle) would leave there, moved, down to
+    /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where most stay.
+    #[inline]
+    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
+        let _ = (x, y, needed);
+        stays.fill(0);
     }
 
     /// The farthest that [`settle`](Self::settle) takes a point away from where relaxation moved it, in
@@ -163,9 +183,19 @@ macro_rules! forward {
             (**self).detail(at)
         }
 
+        #[inline(always)]
+        fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
+            (**self).surroundings(x, y, local, detail);
+        }
+
         #[inline]
         fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
             (**self).settle(centre, moved, needed)
+        }
+
+        #[inline(always)]
+        fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
+            (**self).stays(x, y, needed, stays);
         }
 
         #[inline]

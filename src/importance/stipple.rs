@@ -18,14 +18,19 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
+use super::interpolation::{Grid, RUN};
 use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError};
 use crate::domain::{Domain, Region};
+use crate::walk::scalar::Scalar;
 
 /// No box grows past this many spacings of the mean importance.
 const LARGEST_SPACING: f64 = 1.5;
 
 /// The relative deviations between which the share of the layer for detail grows from 0 to 1.
 const DETAIL_RANGE: [f64; 2] = [0.03, 0.15];
+
+/// The plane of details holds 0 … 255.
+const FULL_DETAIL: f64 = 1.0 / 255.0;
 
 /// A point may go where the importance is this part of what its rank needs.
 const TOLERANCE: f64 = 0.6;
@@ -122,34 +127,26 @@ impl StippleMap {
         self.acceptance.map().domain()
     }
 
-    /// Between the centres of the four pixels around a point, the border's beyond the image.
-    fn bilinear<T: Copy + Into<f64>>(&self, plane: &[T], at: DVec2) -> f64 {
-        // `max` takes NaN to 0.
-        let corner = (at - 0.5).max(DVec2::ZERO);
-        let (last_x, last_y) = (self.width - 1, self.height - 1);
-        let (x0, y0) = ((corner.x as usize).min(last_x), (corner.y as usize).min(last_y));
-        let (x1, y1) = ((x0 + 1).min(last_x), (y0 + 1).min(last_y));
-        // Past the last centre both neighbours are the same pixel, whatever the weight.
-        let weight = (corner - DVec2::new(x0 as f64, y0 as f64)).min(DVec2::ONE);
-        let pixel = |x: usize, y: usize| plane[y * self.width + x].into();
-        let (a, b, c, d): (f64, f64, f64, f64) =
-            (pixel(x0, y0), pixel(x1, y0), pixel(x0, y1), pixel(x1, y1));
-        let upper = a + (b - a) * weight.x;
-        let lower = c + (d - c) * weight.x;
-        // Rounding must not carry the value past its own bound.
-        (upper + (lower - upper) * weight.y).clamp(0.0, a.max(b).max(c).max(d))
+    /// Where the planes' pixels lie.
+    fn grid(&self) -> Grid {
+        let Self { width, height, .. } = *self;
+        Grid { width, height, min: DVec2::ZERO, texel: DVec2::ONE }
     }
 
     /// The importance averaged at the scale of the points' spacing.
     fn phase_at(&self, at: DVec2) -> f64 {
-        self.bilinear(&self.phase, at)
+        self.grid().value(&self.phase, at)
     }
 
-    /// The image's pixel under a point, the nearest one beyond the image.
-    fn pixel_under(&self, at: DVec2) -> f64 {
-        let x = (at.x as usize).min(self.width - 1);
-        let y = (at.y as usize).min(self.height - 1);
-        f64::from(self.importance[y * self.width + x])
+    /// Whether a point may go there that is accepted down to importance `needed`. What counts is the
+    /// pixel under the point, the nearest one beyond the image, not a mixture of pixels: edges stay as
+    /// sharp as the image's.
+    #[inline(always)]
+    fn admits(&self, at: DVec2, needed: f64) -> bool {
+        // Signed: the cheaper conversion, which also takes NaN to 0.
+        let index = |t: f64, size: usize| (t as i64).clamp(0, size as i64 - 1) as usize;
+        let (x, y) = (index(at.x, self.width), index(at.y, self.height));
+        TOLERANCE * needed < f64::from(self.importance[y * self.width + x])
     }
 
     /// The spacing of points where the importance is `importance`, in pixels, capped.
@@ -228,6 +225,11 @@ impl Importance for StippleMap {
         self.acceptance.value(at)
     }
 
+    #[inline(always)]
+    fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
+        self.acceptance.values(origin, x, y, values);
+    }
+
     fn upper_bound(&self, region: &Region) -> f64 {
         self.acceptance.upper_bound(region)
     }
@@ -245,13 +247,41 @@ impl Importance for StippleMap {
     }
 
     fn detail(&self, at: DVec2) -> f64 {
-        self.bilinear(&self.detail, at) * (1.0 / 255.0)
+        self.grid().value(&self.detail, at) * FULL_DETAIL
+    }
+
+    #[inline(always)]
+    fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
+        let grid = self.grid();
+        let runs = x.chunks(RUN).zip(y.chunks(RUN));
+        for ((x, y), (local, detail)) in runs.zip(local.chunks_mut(RUN).zip(detail.chunks_mut(RUN)))
+        {
+            let points = x.iter().zip(y).map(|(x, y)| [*x, *y]);
+            match grid.cells(points.clone()) {
+                Some(cells) => {
+                    cells.read(&self.phase, local);
+                    cells.read(&self.detail, detail);
+                    detail.iter_mut().for_each(|detail| *detail *= FULL_DETAIL);
+                }
+                None => {
+                    for ((local, detail), at) in local.iter_mut().zip(detail).zip(points) {
+                        let at = DVec2::from(at);
+                        (*local, *detail) = (self.phase_at(at), self.detail(at));
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
+        for (((x, y), needed), stays) in x.iter().zip(y).zip(needed).zip(stays) {
+            *stays = u8::from(self.admits(DVec2::new(*x, *y), *needed));
+        }
     }
 
     fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        let needed = TOLERANCE * needed;
-        // The pixel under the point, not a mixture of pixels: edges stay as sharp as the image's.
-        let allowed = |p: DVec2| needed < self.pixel_under(p);
+        let allowed = |p: DVec2| self.admits(p, needed);
         if allowed(moved) {
             return moved;
         }
@@ -342,5 +372,39 @@ impl Sums {
         let (a, b) = (self.corner(high.x, high.y), self.corner(low.x, high.y));
         let (c, d) = (self.corner(high.x, low.y), self.corner(low.x, low.y));
         core::array::from_fn(|k| ((a[k] - b[k] - c[k] + d[k]) / area).max(0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::seed::SplitMix64;
+
+    #[test]
+    fn many_at_once_are_the_single_ones() {
+        let mut random = SplitMix64::new(5);
+        let pixels: Vec<f32> =
+            (0..40 * 30).map(|i| if i % 40 < 20 { random.unit() as f32 } else { 0.9 }).collect();
+        let map = StippleMap::new(40, 30, pixels, InvalidPixels::Reject, 400.0).unwrap();
+        // More than a run, a part of one at the end, and some points beyond the image.
+        let mut coordinate = |size: f64| -> Vec<f64> {
+            (0..200).map(|_| random.unit() * (size + 4.0) - 2.0).collect()
+        };
+        let (x, y, needed) = (coordinate(40.0), coordinate(30.0), coordinate(1.0));
+        let (mut values, mut local) = ([0.0; 200], [0.5; 200]);
+        let (mut detail, mut stays) = ([0.0; 200], [9; 200]);
+        map.values(DVec2::ZERO, &x, &y, &mut values);
+        map.surroundings(&x, &y, &mut local, &mut detail);
+        map.stays(&x, &y, &needed, &mut stays);
+        let mut moved = 0;
+        for i in 0..200 {
+            let at = DVec2::new(x[i], y[i]);
+            assert_eq!(values[i], map.value(at));
+            assert_eq!((local[i], detail[i]), (map.local(at, 0.5), map.detail(at)));
+            let settled = map.settle(DVec2::new(20.0, 15.0), at, needed[i]);
+            assert_eq!(stays[i] == 1, settled == at);
+            moved += usize::from(settled != at);
+        }
+        assert!((20..180).contains(&moved), "{moved}");
     }
 }

@@ -139,9 +139,13 @@ impl<S: Scalar> Chunk<S> {
         if batch.inside {
             self.read_values(sampling);
         } else {
-            for i in 0..self.len.min(CHUNK) {
-                self.values[i] = sampling.importance().value(mover.nearest(self.x[i], self.y[i]));
+            let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
+            let len = self.len.min(CHUNK);
+            for i in 0..len {
+                [x[i], y[i]] = mover.nearest(self.x[i], self.y[i]).to_array();
             }
+            let (x, y) = (&x[..len], &y[..len]);
+            sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
         }
         self.mark_accepted(sampling, batch)?;
         self.pack_with_values();
@@ -217,6 +221,17 @@ impl<I: Importance> Mover<'_, '_, I> {
         let len = run.len().min(RUN);
         let (mut phases, mut details) = ([1.0f64; RUN], [0.0f64; RUN]);
         let (mut deep, mut other) = ([0u8; RUN], [0u8; RUN]);
+        let (mut at_x, mut at_y, mut local) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        for k in 0..len {
+            let i = run.start + k;
+            let at = self.nearest(chunk.x[i], chunk.y[i]);
+            (at_x[k], at_y[k], local[k]) = (at.x, at.y, chunk.values[i]);
+        }
+        let (local, unread) = (&mut local[..len], &mut details[..len]);
+        sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
+        if !self.relaxation.has_rough() {
+            details = [0.0; RUN];
+        }
         for k in 0..len {
             let i = run.start + k;
             let value = chunk.values[i];
@@ -224,8 +239,7 @@ impl<I: Importance> Mover<'_, '_, I> {
             let (past_1, past_2) = (threshold > tiles_1, threshold > tiles_2);
             let one_tile = if past_1 { per_tile[1] } else { per_tile[0] };
             let one_tile = if past_2 { per_tile[2] } else { one_tile };
-            let at = self.nearest(chunk.x[i], chunk.y[i]);
-            (phases[k], details[k]) = self.phase(at, value, one_tile);
+            phases[k] = (scale.threshold(local[k]) * one_tile).clamp(1.0, DELTA);
             deep[k] = u8::from(past_1) + u8::from(past_2);
             other[k] = u8::from((threshold > most) | (threshold <= least) | (chunk.entry[i] == 0));
         }
@@ -252,13 +266,13 @@ impl<I: Importance> Mover<'_, '_, I> {
             let vector = Turn::new(turns[k]).turned([vx[k], vy[k]]);
             [dx[k], dy[k]] = frames[usize::from(deep[k]).min(2)].step(vector);
         }
-        let others = other[..len].iter().fold(0, |any, other| any | other) != 0;
-        if others || sampling.importance().longest_settling() > 0.0 {
-            for k in 0..len {
-                let i = run.start + k;
-                let step = if other[k] == 0 { [dx[k], dy[k]] } else { self.step(chunk, i) };
-                self.settle(chunk, i, step);
+        if other[..len].iter().fold(0, |any, other| any | other) != 0 {
+            for k in (0..len).filter(|k| other[*k] != 0) {
+                [dx[k], dy[k]] = self.step(chunk, run.start + k);
             }
+        }
+        if sampling.importance().longest_settling() > 0.0 {
+            self.settle(chunk, run, &dx, &dy);
         } else {
             let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
             for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
@@ -267,22 +281,40 @@ impl<I: Importance> Mover<'_, '_, I> {
         }
     }
 
-    /// Moves point `i` by a step, or to where the importance lets it go.
+    /// Moves points by steps, or to where the importance lets them go.
     #[inline(always)]
-    fn settle<S: Scalar>(&self, chunk: &mut Chunk<S>, i: usize, step: [S; 2]) {
-        let importance = self.sampling.importance();
-        let (x, y) = (chunk.x[i], chunk.y[i]);
-        (chunk.x[i], chunk.y[i]) = (x + step[0], y + step[1]);
-        if importance.longest_settling() > 0.0 {
-            let placement = self.sampling.placement();
-            let corner = placement.domain().min();
-            let centre = corner + DVec2::new(x.to_f64(), y.to_f64());
-            let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-            let rank = self.batch.rank(self.batch.block(placement), chunk.entry[i].into());
-            let needed = self.sampling.scale().importance_of(rank);
-            let settled = importance.settle(centre, moved, needed);
-            if settled != moved {
-                [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+    fn settle<S: Scalar>(
+        &self,
+        chunk: &mut Chunk<S>,
+        run: Range<usize>,
+        dx: &[S; RUN],
+        dy: &[S; RUN],
+    ) {
+        let (importance, scale) = (self.sampling.importance(), self.sampling.scale());
+        let placement = self.sampling.placement();
+        let corner = placement.domain().min();
+        let block = self.batch.block(placement);
+        let len = run.len().min(RUN);
+        let (mut moved_x, mut moved_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        for k in 0..len {
+            let i = run.start + k;
+            moved_x[k] = corner.x + (chunk.x[i] + dx[k]).to_f64();
+            moved_y[k] = corner.y + (chunk.y[i] + dy[k]).to_f64();
+            needed[k] = scale.importance_of(self.batch.rank(block, chunk.entry[i].into()));
+        }
+        let mut stays = [0u8; RUN];
+        importance.stays(&moved_x[..len], &moved_y[..len], &needed[..len], &mut stays[..len]);
+        for k in 0..len {
+            let i = run.start + k;
+            let (x, y) = (chunk.x[i], chunk.y[i]);
+            (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
+            if stays[k] == 0 {
+                let centre = corner + DVec2::new(x.to_f64(), y.to_f64());
+                let moved = DVec2::new(moved_x[k], moved_y[k]);
+                let settled = importance.settle(centre, moved, needed[k]);
+                if settled != moved {
+                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+                }
             }
         }
     }
