@@ -225,11 +225,9 @@ impl<'a> LayerTable<'a> {
         let interval = (tau.to_bits() >> PHASE_SHIFT).saturating_sub(FIRST_PHASE);
         let start = self.phases[interval.min(PHASES as u64 - 1) as usize];
         let mut after = usize::from(u16::from_le_bytes(start));
-        // Few intervals hold more than two slots: no branch depends on the first ones.
-        for _ in 0..2 {
-            let last = self.slots.len() - 1;
-            after += usize::from(self.tau(after.min(last)) <= tau);
-        }
+        // Few intervals hold more than one slot: no branch depends on the first one.
+        let last = self.slots.len() - 1;
+        after += usize::from(self.tau(after.min(last)) <= tau);
         while after < self.slots.len() && self.tau(after) <= tau {
             after += 1;
         }

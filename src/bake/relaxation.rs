@@ -67,13 +67,13 @@ pub struct Slot {
     pub vectors: Vec<[i8; 2]>,
 }
 
-/// Intervals of τ in which a search for slots may start: 64 an octave of [1, 16), which the first bits
-/// of an `f64` tell.
-pub(crate) const PHASES: usize = 256;
+/// Intervals of τ in which a search for slots may start: 1024 an octave of [1, 16), which the first bits
+/// of an `f64` tell. Slots are farther apart, so that few intervals hold the beginning of more than one.
+pub(crate) const PHASES: usize = 4096;
 
 /// The bits of an `f64` that are not looked at, and those before them of τ = 1.
-pub(crate) const PHASE_SHIFT: u32 = 46;
-pub(crate) const FIRST_PHASE: u64 = 1023 << 6;
+pub(crate) const PHASE_SHIFT: u32 = 42;
+pub(crate) const FIRST_PHASE: u64 = 1023 << 10;
 
 /// δ = 7 + 4√3 as the last slot stores it.
 pub const DELTA: f32 = (7.0 + 4.0 * crate::tiling::cyclotomic::SQRT_3) as f32;

@@ -18,7 +18,7 @@ use crate::tiling::{Rules, TileType};
 pub(crate) const MAGIC: [u8; 8] = *b"12fold\r\n";
 
 /// Format version, raised by every change of layout or meaning.
-pub(crate) const VERSION: u16 = 3;
+pub(crate) const VERSION: u16 = 4;
 
 /// Largest document that is looked at: depth 4 needs 5.3 MB, and room is left for relaxed offsets.
 const MAX_BYTES: usize = 1 << 26;

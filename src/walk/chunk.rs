@@ -173,14 +173,21 @@ impl<S: Scalar> Chunk<S> {
         }
     }
 
+    /// Notes which entries of the block the candidates are.
+    #[inline(always)]
+    pub(crate) fn name_entries(&mut self) {
+        for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
+            // A block has at most 37,829 entries.
+            *entry = (self.first + i) as u16;
+        }
+        self.packed = true;
+    }
+
     /// Moves the marked candidates to the front, in order.
     #[inline(always)]
     pub(crate) fn pack(&mut self) {
         if !self.packed {
-            for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
-                // A block has at most 37,829 entries.
-                *entry = (self.first + i) as u16;
-            }
+            self.name_entries();
         }
         let mut kept = 0;
         for i in 0..self.len.min(CHUNK) {

@@ -133,7 +133,10 @@ impl<S: Scalar> Chunk<S> {
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        let next = self.load(sampling.placement(), batch, start);
+        // Also those that are accepted whatever the importance read it for their phase.
+        let certain = start < batch.certain;
+        let run = Batch { end: batch.run_end(start), ..*batch };
+        let next = self.load(sampling.placement(), &run, start);
         let (low, high) = inner_corners(sampling.placement());
         let mover = Mover { sampling, relaxation, batch, kin, low, high };
         if batch.inside {
@@ -147,8 +150,13 @@ impl<S: Scalar> Chunk<S> {
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
         }
-        self.mark_accepted(sampling, batch)?;
-        self.pack_with_values();
+        if certain {
+            self.keep[..self.len].fill(1);
+            self.name_entries();
+        } else {
+            self.mark_accepted(sampling, batch)?;
+            self.pack_with_values();
+        }
         mover.move_all(self);
         if batch.inside {
             self.keep[..self.len].fill(1);

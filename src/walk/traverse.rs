@@ -264,8 +264,7 @@ impl<K: Kinship> Traversal<K> {
             };
             let certain = match constant {
                 true => end,
-                // Where relaxed points go depends on the importance that they read.
-                false if K::RELAXED || end < WORTH_A_BOUND => 0,
+                false if end < WORTH_A_BOUND || (K::RELAXED && !inside) => 0,
                 false => certain_below(sampling, node, levels).min(end),
             };
             let few = match (constant, inside) {
