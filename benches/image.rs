@@ -4,9 +4,8 @@
 mod common;
 
 use std::hint::black_box;
-use std::time::Duration;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec2;
 use twelvefold::{
     Amount, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Probed, Sampling,
@@ -14,20 +13,7 @@ use twelvefold::{
 
 fn points(criterion: &mut Criterion) {
     for map in &common::maps::all() {
-        let contenders = common::image(map);
-        for n in [1 << 6, 1 << 12, 1 << 16, 1 << 20] {
-            let mut group = criterion.benchmark_group(format!("{}/{n}", map.name));
-            group.throughput(Throughput::Elements(n as u64));
-            let mut buffer = vec![Vec2::ZERO; n + n / 8 + 64];
-            for contender in contenders.iter().filter(|contender| n <= contender.most) {
-                let mut make = (contender.prepare)(n);
-                contender.assert_count(n, make(&mut buffer));
-                group.bench_function(BenchmarkId::from_parameter(&contender.name), |bencher| {
-                    bencher.iter(|| make(&mut buffer));
-                });
-            }
-            group.finish();
-        }
+        common::groups::bench(criterion, map.name, &common::image(map));
     }
 }
 
@@ -82,10 +68,7 @@ fn update(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(200))
-        .measurement_time(Duration::from_millis(600));
+    config = common::groups::criterion();
     targets = points, probed, update
 }
 criterion_main!(benches);

@@ -3,6 +3,7 @@
 
 #![allow(dead_code, reason = "each bench uses a part")]
 
+pub(crate) mod groups;
 pub(crate) mod maps;
 pub(crate) mod peers;
 
@@ -99,6 +100,27 @@ fn ours<'a, I: Importance + 'a>(
     })
 }
 
+/// Ours on two threads, in one piece of memory a part.
+#[cfg(feature = "parallel")]
+fn two_threads<'a, I: Importance + Sync>(
+    domain: Domain,
+    relaxed: bool,
+    importance: &'a I,
+) -> Contender<'a> {
+    let name = if relaxed { "two threads, relaxed" } else { "two threads" };
+    Contender::new(name, move |n| {
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("two threads");
+        let placement = Placement::new(domain, 1);
+        let mut shards = twelvefold::Shards::<Vec2>::new();
+        move |_: &mut [Vec2]| {
+            let sampling = sampling(&placement, importance, n, relaxed);
+            let made = sampling.and_then(|s| threads.install(|| shards.sample(&s)));
+            made.expect("a valid sampling");
+            shards.len()
+        }
+    })
+}
+
 /// Copying as many points as there are.
 pub(crate) fn memcpy<'a>() -> Contender<'a> {
     Contender::new("memcpy of the same bytes", |n| {
@@ -122,6 +144,10 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
     }
     let tables = Tables::built_in();
     all.push(ours("twelvefold, relaxed", Domain::unit(), tables, true, |_| Constant::ONE));
+    #[cfg(feature = "parallel")]
+    for relaxed in [false, true] {
+        all.push(two_threads(Domain::unit(), relaxed, &Constant::ONE));
+    }
     all.extend(peers::uniform());
     all
 }
@@ -133,6 +159,10 @@ pub(crate) fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
     let mut all = vec![memcpy()];
     all.push(ours("twelvefold", domain, tables, false, move |_| importance));
     all.push(ours("twelvefold, relaxed", domain, tables, true, move |_| importance));
+    #[cfg(feature = "parallel")]
+    for relaxed in [false, true] {
+        all.push(two_threads(domain, relaxed, importance));
+    }
     let stipple = move |n: usize| {
         let pixels = importance.pixels().to_vec();
         let (side, reject) = (maps::SIDE, InvalidPixels::Reject);

@@ -49,6 +49,28 @@ pub(crate) fn table(tables: &[Table]) -> String {
             table.at("alias", 4096) / ours(table, 4096),
         );
     }
+    if cfg!(feature = "parallel") {
+        let maps = [("uniform", uniform), ("smooth map", smooth), ("textured map", textured)];
+        for (name, table) in maps {
+            for n in [MILLION, 16 * MILLION] {
+                let one = match name {
+                    "uniform" => table.at("twelvefold, baked depth 3", n),
+                    _ => ours(table, n),
+                };
+                at_least(
+                    &format!("{name}, {}M: two threads over one", n >> 20),
+                    1.7,
+                    one / table.at("two threads", n),
+                );
+            }
+            at_least(
+                &format!("{name}, relaxed, 1M: two threads over one"),
+                1.7,
+                table.at("twelvefold, relaxed", MILLION)
+                    / table.at("two threads, relaxed", MILLION),
+            );
+        }
+    }
     let mut at_most = |goal: &str, asked: f64, measured: f64| {
         let met = if measured <= asked { "met" } else { "missed" };
         let _ = writeln!(text, "| {goal} | ≤ {asked} | {measured:.2} | {met} |");

@@ -281,7 +281,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// Part `index` (from 0) of `of` parts of about equal work. The points of all parts, one part
     /// after the other, are those of the whole in the same order; each point is in one part.
     ///
-    /// Costs a walk over some fifty tiles a part, which every part's own walk repeats.
+    /// Costs a walk over some twenty tiles a part, which every part's own walk repeats.
     ///
     /// # Errors
     /// [`SamplingError::Shard`] unless `index` < `of`; otherwise as [`visit`](Self::visit).
@@ -303,7 +303,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
                 bound * self.density() * domain.area()
             }
         };
-        let share = expected * self.clip.area() / domain.area() / (32.0 * parts as f64);
+        let share = expected * self.clip.area() / domain.area() / (8.0 * parts as f64);
         let grain = (share as u64).max(256);
         let measuring = Self { share: Some(Share::nothing(grain)), ..*self };
         let mut traversal = AnyTraversal::new(&measuring);
