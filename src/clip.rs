@@ -58,6 +58,12 @@ impl Clip {
         nearest.distance_squared(region.centre) <= region.radius * region.radius
     }
 
+    /// The least and the greatest corner of the clip with a margin around it.
+    #[inline(always)]
+    pub(crate) fn widened(&self, margin: f64) -> (DVec2, DVec2) {
+        (self.min - margin, self.max + margin)
+    }
+
     /// Whether all points in the disc lie in the clip.
     #[inline(always)]
     pub(crate) fn holds(&self, region: &Region) -> bool {

@@ -152,9 +152,15 @@ impl<S: Scalar> Chunk<S> {
         }
         if certain {
             self.keep[..self.len].fill(1);
-            self.name_entries();
         } else {
             self.mark_accepted(sampling, batch)?;
+        }
+        if !batch.inside {
+            self.unmark_far(walk);
+        }
+        if certain && batch.inside {
+            self.name_entries();
+        } else {
             self.pack_with_values();
         }
         mover.move_all(self);
@@ -164,6 +170,30 @@ impl<S: Scalar> Chunk<S> {
             self.mark_inside::<I, P>(walk);
         }
         Ok(next)
+    }
+}
+
+impl<S: Scalar> Chunk<S> {
+    /// Unmarks those of the marked candidates that are too far from the clip to be moved into it.
+    #[inline(always)]
+    fn unmark_far<I: Importance>(&mut self, walk: &Walk<'_, '_, I, S>) {
+        let Walk { sampling, clip, .. } = *walk;
+        let len = self.len.min(CHUNK);
+        let mut least = f64::MAX;
+        for (value, keep) in self.values[..len].iter().zip(&self.keep) {
+            least = if *keep == 1 && *value < least { *value } else { least };
+        }
+        // The sparser, the longer are the vectors.
+        let level = level_of(sampling.scale().threshold(least));
+        let margin = margin::<Kin>(sampling, level) * (1.0 + 1e-6);
+        let corner = sampling.placement().domain().min();
+        let (low, high) = clip.widened(margin);
+        let (low, high) = (low - corner, high - corner);
+        let columns = self.x[..len].iter().zip(&self.y);
+        for (keep, (x, y)) in self.keep[..len].iter_mut().zip(columns) {
+            let (x, y) = (x.to_f64(), y.to_f64());
+            *keep &= u8::from((low.x <= x) & (x <= high.x) & (low.y <= y) & (y <= high.y));
+        }
     }
 }
 
