@@ -220,11 +220,14 @@ impl<I: Importance> Mover<'_, '_, I> {
     fn move_all<S: Scalar>(&self, chunk: &mut Chunk<S>) {
         let node = &self.batch.node;
         let placement = self.sampling.placement();
-        let lineages = [1, 2, 3].map(|below| Lineage::of_entries(self.kin, node, below));
-        let frames = [0, 1, 2].map(|deep: u8| {
+        // Written out here and below: `map` of an array is not always inlined.
+        let lineage = |below: usize| Lineage::of_entries(self.kin, node, below);
+        let lineages = [lineage(1), lineage(2), lineage(3)];
+        let frame = |deep: u8| {
             let rotation = lineages[usize::from(deep)].rotation;
             StepFrame::<S>::new(placement, node.level + 1 + deep, rotation)
-        });
+        };
+        let frames = [frame(0), frame(1), frame(2)];
         let len = chunk.len.min(CHUNK);
         for start in (0..len).step_by(RUN) {
             self.move_run(chunk, start..len.min(start + RUN), &lineages, &frames);
@@ -251,8 +254,8 @@ impl<I: Importance> Mover<'_, '_, I> {
         };
         let (tiles_1, tiles_2) = (tiles(1), tiles(2));
         let most = if placement.tables().depth() < 3 { tiles_2 } else { tiles(3) };
-        let per_tile =
-            [0, 1, 2].map(|below| RECIPROCALS.get(level + below).copied().unwrap_or(0.0));
+        let per_tile = |below: usize| RECIPROCALS.get(level + below).copied().unwrap_or(0.0);
+        let per_tile = [per_tile(0), per_tile(1), per_tile(2)];
         // Past this, a point is moved at all.
         let least = tiles(usize::from(FIRST_RELAXED_LEVEL - 1).saturating_sub(level));
         let least = if level + 1 < usize::from(FIRST_RELAXED_LEVEL) { least } else { 0.0 };
