@@ -133,7 +133,7 @@ impl<S: Scalar> Chunk<S> {
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        // Also those that are accepted whatever the importance read it for their phase.
+        // Certain ones too read the importance: their phase depends on it.
         let certain = start < batch.certain;
         let run = Batch { end: batch.run_end(start), ..*batch };
         let next = self.load(sampling.placement(), &run, start);
@@ -158,10 +158,9 @@ impl<S: Scalar> Chunk<S> {
         if !batch.inside {
             self.unmark_far(walk);
         }
-        if certain && batch.inside {
-            self.name_entries();
-        } else {
-            self.pack_with_values();
+        match certain && batch.inside {
+            true => self.name_entries(),
+            false => self.pack_with_values(),
         }
         mover.move_all(self);
         if batch.inside {
@@ -171,9 +170,7 @@ impl<S: Scalar> Chunk<S> {
         }
         Ok(next)
     }
-}
 
-impl<S: Scalar> Chunk<S> {
     /// Unmarks those of the marked candidates that are too far from the clip to be moved into it.
     #[inline(always)]
     fn unmark_far<I: Importance>(&mut self, walk: &Walk<'_, '_, I, S>) {
