@@ -26,6 +26,9 @@ const UNIFORM: [usize; 6] = [1 << 6, 1 << 10, 1 << 14, 1 << 16, 1 << 20, 1 << 24
 /// Numbers of points of the tables of maps.
 const IMAGE: [usize; 8] = [1 << 4, 1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 16, 1 << 20, 1 << 24];
 
+/// How long a contender is called before the next one's turn: long enough that threads have woken up.
+const TURN: Duration = Duration::from_millis(12);
+
 /// Calls that take less, in ns, are made once before the clock runs.
 const WARM_UP: f64 = 50e6;
 
@@ -79,7 +82,7 @@ fn measure(title: String, counts: &'static [usize], contenders: &[Contender<'_>]
                 }
                 let (mut made, mut calls) = (0, 0);
                 let start = Instant::now();
-                while calls == 0 || start.elapsed() < Duration::from_millis(4) {
+                while calls == 0 || start.elapsed() < TURN {
                     // Many calls to a look at the clock where calls are short.
                     for _ in 0..(4096 / n).max(1) {
                         made += std::hint::black_box(make(&mut buffer));

@@ -2,6 +2,8 @@
 //! domain, importance and comparison. Each pass is a loop without branches over arrays, which
 //! compilers turn into vector instructions.
 
+use core::ops::Range;
+
 use glam::DVec2;
 
 use super::batch::{Batch, tile_counts};
@@ -67,8 +69,7 @@ impl<S: Scalar> Chunk<S> {
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
         let certain = start < batch.certain;
-        let run = Batch { end: batch.run_end(start), ..*batch };
-        let next = self.load(sampling.placement(), &run, start);
+        let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         if batch.inside {
             if certain {
                 self.keep[..self.len].fill(1);
@@ -86,14 +87,18 @@ impl<S: Scalar> Chunk<S> {
         Ok(next)
     }
 
-    /// Takes the fixed centres of the batch's entries from `start` on, as many as fit. Returns the next
-    /// entry.
+    /// Takes the fixed centres of some of the batch's entries, as many as fit. Returns the next entry.
     #[inline(always)]
-    pub(crate) fn load(&mut self, placement: &Placement<'_>, batch: &Batch, start: usize) -> usize {
+    pub(crate) fn load(
+        &mut self,
+        placement: &Placement<'_>,
+        batch: &Batch,
+        entries: Range<usize>,
+    ) -> usize {
         self.load_as(
             placement,
             batch,
-            start,
+            entries,
             #[inline(always)]
             |_, segment, x, y| segment.write_columns(x, y),
         )
@@ -105,13 +110,13 @@ impl<S: Scalar> Chunk<S> {
         &mut self,
         placement: &Placement<'_>,
         batch: &Batch,
-        start: usize,
+        entries: Range<usize>,
         steps: &Steps<'_, S>,
     ) -> usize {
         self.load_as(
             placement,
             batch,
-            start,
+            entries,
             #[inline(always)]
             |first, segment, x, y| {
                 let moved = steps.moved(first, segment.positions());
@@ -127,18 +132,19 @@ impl<S: Scalar> Chunk<S> {
         &mut self,
         placement: &Placement<'_>,
         batch: &Batch,
-        start: usize,
+        entries: Range<usize>,
         write: impl Fn(usize, Segment<'_, S>, &mut [S], &mut [S]),
     ) -> usize {
-        let mut next = start;
+        let mut next = entries.start;
         self.len = 0;
-        while self.len < CHUNK && next < batch.end {
-            let (segment, end) = batch.segment::<S>(placement, next, CHUNK - self.len);
+        while self.len < CHUNK && next < entries.end {
+            let most = (CHUNK - self.len).min(entries.end - next);
+            let (segment, end) = batch.segment::<S>(placement, next, most);
             let filled = self.len..self.len + (end - next);
             write(next, segment, &mut self.x[filled.clone()], &mut self.y[filled.clone()]);
             (self.len, next) = (filled.end, end);
         }
-        (self.first, self.packed) = (start, false);
+        (self.first, self.packed) = (entries.start, false);
         next
     }
 

@@ -135,8 +135,7 @@ impl<S: Scalar> Chunk<S> {
         let sampling = walk.sampling;
         // Certain ones too read the importance: their phase depends on it.
         let certain = start < batch.certain;
-        let run = Batch { end: batch.run_end(start), ..*batch };
-        let next = self.load(sampling.placement(), &run, start);
+        let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
         let mover = Mover { sampling, relaxation, batch, kin, low, high };
         if batch.inside {

@@ -113,7 +113,8 @@ impl<K: Kinship> Traversal<K> {
         steps: &Steps<'_, P::Scalar>,
         chunk: &mut Chunk<P::Scalar>,
     ) -> usize {
-        let next = chunk.load_moved(sampling.placement(), &self.batch, start, steps);
+        let entries = start..self.batch.end;
+        let next = chunk.load_moved(sampling.placement(), &self.batch, entries, steps);
         chunk.mark_inside::<I, P>(&Walk { sampling, clip: &self.clip, to_caller });
         next
     }
