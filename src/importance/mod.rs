@@ -93,7 +93,7 @@ pub trait Importance {
         0.0
     }
 
-    /// [`local`](Self::local) and [`detail`](Self::detail) at each point (x[i], y[i]), all of one length;
+    /// [`local`](Self::local) and [`detail`](Self::detail) at each point `(x[i], y[i])`, all of one length;
     /// `local` holds the importance at each when it is called. Worth overriding where many at once are
     /// cheaper; the numbers must be the same.
     #[inline]
@@ -113,7 +113,7 @@ pub trait Importance {
         moved
     }
 
-    /// 1 for each point (x[i], y[i]) that [`settle`](Self::settle) would leave there, moved, down to
+    /// 1 for each point `(x[i], y[i])` that [`settle`](Self::settle) would leave there, moved, down to
     /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where most stay.
     #[inline]
     fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
