@@ -26,8 +26,9 @@ const UNIFORM: [usize; 6] = [1 << 6, 1 << 10, 1 << 14, 1 << 16, 1 << 20, 1 << 24
 /// Numbers of points of the tables of maps.
 const IMAGE: [usize; 8] = [1 << 4, 1 << 6, 1 << 8, 1 << 10, 1 << 12, 1 << 16, 1 << 20, 1 << 24];
 
-/// How long a contender is called before the next one's turn: long enough that threads have woken up.
-const TURN: Duration = Duration::from_millis(12);
+/// How long a contender is called before the next one's turn: long enough that
+/// threads have woken up and found their cores.
+const TURN: Duration = Duration::from_millis(40);
 
 /// Calls that take less, in ns, are made once before the clock runs.
 const WARM_UP: f64 = 50e6;

@@ -7,6 +7,19 @@ use plotters::prelude::*;
 
 use crate::Table;
 
+/// Those of ten kinds that can be told apart, without the red of ours.
+const COLOURS: [RGBColor; 9] = [
+    RGBColor(127, 127, 127),
+    RGBColor(255, 127, 14),
+    RGBColor(31, 119, 180),
+    RGBColor(188, 189, 34),
+    RGBColor(148, 103, 189),
+    RGBColor(44, 160, 44),
+    RGBColor(140, 86, 75),
+    RGBColor(227, 119, 194),
+    RGBColor(23, 190, 207),
+];
+
 /// Draws the tables side by side.
 pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>> {
     let root = SVGBackend::new(path, (1200, 520)).into_drawing_area();
@@ -33,10 +46,12 @@ pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>>
             .x_label_formatter(&|n| format!("{n:.0}"))
             .y_label_formatter(&|t| format!("{t:.0e}"))
             .draw()?;
-        for (i, row) in table.rows.iter().enumerate() {
+        // One thread only: more lines are a tangle.
+        let rows = table.rows.iter().filter(|row| !row.name.starts_with("two threads"));
+        for (i, row) in rows.enumerate() {
             // The default depth stands out.
             let ours = matches!(row.name.as_str(), "twelvefold" | "twelvefold, baked depth 3");
-            let colour = if ours { RED.mix(1.0) } else { Palette99::pick(i + 1).mix(1.0) };
+            let colour = if ours { RED.mix(1.0) } else { COLOURS[i % COLOURS.len()].mix(1.0) };
             let style = colour.stroke_width(if ours { 3 } else { 1 });
             chart
                 .draw_series(LineSeries::new(times(row), style).point_size(2))?
