@@ -47,7 +47,7 @@ const WAYS: [f64; 3] = [0.5, 0.25, 0.0];
 /// [0, height), x right, y down.
 ///
 /// For [`Sampling::relaxed`](crate::Sampling::relaxed); as fixed points' importance it is the image,
-/// softened by half a spacing. Keeps some 15 bytes a pixel.
+/// softened by half a spacing. Keeps some 16 bytes a pixel.
 #[derive(Clone, Debug)]
 pub struct StippleMap {
     width: usize,
