@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use twelvefold::{
-    Amount, Constant, Domain, DomainError, Function, ImageMap, InvalidPixels, Limits, MapError,
-    Placement, Region, Sampling, SamplingError,
+    Amount, Constant, Domain, DomainError, Function, ImageMap, Importance, InvalidPixels, Limits,
+    MapError, Placement, Region, Sampling, SamplingError,
 };
 
 /// Importance 1 in a disc and 0 elsewhere, with its exact bound.
@@ -361,6 +361,44 @@ fn closures_that_break_their_promise_are_errors() {
     let nothing = Function::new(|_| -0.0, |_: &Region| -0.0);
     let sampling = Sampling::new(&placement, &nothing, Amount::Density(1e6)).unwrap();
     assert_eq!(points(&sampling).unwrap(), []);
+}
+
+/// Importance 1, with some lower bound.
+struct Floor(f64);
+
+impl Importance for Floor {
+    fn value(&self, _: DVec2) -> f64 {
+        1.0
+    }
+
+    fn upper_bound(&self, _: &Region) -> f64 {
+        1.0
+    }
+
+    fn lower_bound(&self, _: &Region) -> f64 {
+        self.0
+    }
+}
+
+#[test]
+fn no_lower_bound_makes_more_points_than_the_upper_one_admits() {
+    let placement = Placement::new(Domain::unit(), 4);
+    let points_of = |importance: &dyn Importance, relaxed: bool| {
+        let sampling = Sampling::new(&placement, &importance, Amount::Density(20_000.0)).unwrap();
+        let sampling = if relaxed { sampling.relaxed().unwrap() } else { sampling };
+        let mut buffer = vec![Vec2::ZERO; 25_000];
+        let filled = sampling.fill(&mut buffer).unwrap();
+        assert!(filled.complete);
+        buffer.truncate(filled.written);
+        buffer.sort_by(|a, b| (a.x, a.y).partial_cmp(&(b.x, b.y)).unwrap());
+        buffer
+    };
+    for relaxed in [false, true] {
+        let expected = points_of(&Floor(0.0), relaxed);
+        for floor in [f64::NAN, -1.0, f64::NEG_INFINITY, 5e-324, 0.3, 1.0, 2.0, f64::INFINITY] {
+            assert!(points_of(&Floor(floor), relaxed) == expected, "{floor}");
+        }
+    }
 }
 
 #[test]

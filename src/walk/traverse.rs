@@ -267,7 +267,7 @@ impl<K: Kinship> Traversal<K> {
             let certain = match constant {
                 true => end,
                 false if end < WORTH_A_BOUND || (K::RELAXED && !inside) => 0,
-                false => certain_below(sampling, node, levels).min(end),
+                false => certain_below(sampling, (node, *bound), levels).min(end),
             };
             let few = match (constant, inside) {
                 // Whole blocks, whose vectors are looked up together.
@@ -297,12 +297,18 @@ impl<K: Kinship> Traversal<K> {
 }
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
-/// importance is there, between its bounds.
-fn certain_below<I: Importance>(sampling: &Sampling<'_, I>, node: &Node, levels: usize) -> usize {
+/// importance is there, between its lower bound and the upper `bound`.
+fn certain_below<I: Importance>(
+    sampling: &Sampling<'_, I>,
+    (node, bound): (&Node, f64),
+    levels: usize,
+) -> usize {
     let placement = sampling.placement();
     let centre = placement.domain().min() + placement.centre(node);
     let region = Region { centre, radius: placement.reach(node.level, levels) };
-    let limit = sampling.scale().limit(sampling.importance().lower_bound(&region));
+    let lower = sampling.importance().lower_bound(&region);
+    // A broken promise admits no more than the upper bound; NaN, nothing.
+    let limit = sampling.scale().limit(if lower > bound { bound } else { lower });
     if limit <= node.rank {
         return 0;
     }
