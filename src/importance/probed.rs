@@ -53,6 +53,7 @@ impl<I: Importance> Importance for Probed<I> {
         self.headroom * PROBES.iter().map(value).fold(0.0, f64::max)
     }
 
+    #[inline(always)]
     fn values<S: Scalar>(&self, origin: DVec2, x: &[S], y: &[S], values: &mut [f64]) {
         self.importance.values(origin, x, y, values);
     }
@@ -69,8 +70,18 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.detail(at)
     }
 
+    #[inline(always)]
+    fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
+        self.importance.surroundings(x, y, local, detail);
+    }
+
     fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         self.importance.settle(centre, moved, needed)
+    }
+
+    #[inline(always)]
+    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
+        self.importance.stays(x, y, needed, stays);
     }
 
     fn longest_settling(&self) -> f64 {
