@@ -33,7 +33,7 @@ const WORTH_A_BOUND: usize = 32;
 /// Where the walk stops and tests the candidates that are left: below this many, testing them costs
 /// less than the bounds of the tiles among them save. Those that need no test do not count. Measured at 64
 /// to 16 million points over smooth, textured, hard-edged and high-dynamic-range maps: from 100 to 400
-/// a million points fall by a quarter to a half, from 400 to 800 by up to a sixth.
+/// the time of a million points falls by a quarter to a half, from 400 to 800 by up to a sixth.
 const FEW: usize = 800;
 
 /// How far above the mean bound of a tile and its siblings its own is where importance has a peak.
