@@ -10,8 +10,8 @@ use twelvefold::tiling::{Digits, FCode, TileCounts, TileType};
 use twelvefold::{
     Amount, BilinearMap, Constant, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels,
     Limits, Placement, Position, Sample, Sampling, SamplingError, Scalar as _, StippleMap, Tables,
-    paper,
 };
+use twelvefold_lab::paper;
 
 /// Table files, relaxation files and digit files, as they are and with their checksum made right (of
 /// what is no file of any kind, too): accepted only as they were written.

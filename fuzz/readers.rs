@@ -1,7 +1,7 @@
-//! The body of the target `readers`: the program's own readers, compiled in by path.
+//! The body of the target `readers`: the program's own readers.
 
-use crate::picture::{self, Tone};
-use crate::point_list;
+use twelvefold_files::picture::{self, Tone};
+use twelvefold_files::point_list;
 
 /// Any bytes are a picture, light, a list of points, or an error; never a panic, and pixels are
 /// importance.

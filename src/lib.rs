@@ -71,17 +71,12 @@ mod effort;
 mod environment;
 pub mod estimate;
 pub mod importance;
-#[cfg(feature = "measure")]
-pub mod measure;
 #[cfg(test)]
 mod oracle;
-pub mod paper;
 #[cfg(feature = "parallel")]
 mod parallel;
 mod placement;
 mod points;
-#[cfg(feature = "train")]
-pub mod relax;
 mod relaxed;
 mod sampling;
 mod seed;

@@ -84,14 +84,10 @@ impl StippleMap {
     /// Half-side, in spacings, of the box whose mean decides on acceptance. Measured on the test image at
     /// 65,536 points: from 0.7 to 0.8 the variance of blocks falls from .0712 to .0694, and the
     /// first percentile of nearest distances rises from .499 to .502.
-    pub(crate) const ACCEPTANCE: f64 = 0.8;
+    pub const ACCEPTANCE: f64 = 0.8;
 
     /// The same for the trainer, which accepts by another box.
-    pub(crate) fn of_image(
-        image: ImageMap,
-        points: f64,
-        acceptance: f64,
-    ) -> Result<Self, MapError> {
+    pub fn of_image(image: ImageMap, points: f64, acceptance: f64) -> Result<Self, MapError> {
         let (width, height) = image.size();
         let mean = image.mean();
         let importance = image.into_pixels();

@@ -1,0 +1,37 @@
+//! The command-line program: each subcommand is a module with a `run` that returns a [`Failure`] or
+//! nothing, and this file is the only place that prints an error or chooses the exit code.
+
+mod args;
+mod command;
+mod drawing;
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use twelvefold_files::failure::Failure;
+
+use crate::args::{Arguments, Command};
+use crate::command::{envmap, measure, stipple, tables, tiling};
+
+fn main() -> ExitCode {
+    match process(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            // A closed stderr leaves nobody to tell; the exit code still says it.
+            let _ = writeln!(std::io::stderr(), "twelvefold: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn process(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Stipple(options) => stipple::run(options),
+        Command::Envmap(options) => envmap::run(options),
+        Command::Measure(options) => measure::run(options),
+        Command::Tables => tables::run(),
+        Command::Tiling(options) => tiling::run(options),
+    }
+}

@@ -1,0 +1,117 @@
+//! `twelvefold envmap` and `twelvefold stipple --exact` as their user meets them.
+use std::path::Path;
+use std::process::{Command, Output};
+
+use image::{ImageBuffer, Rgb};
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_twelvefold")).args(arguments).output().unwrap()
+}
+
+/// Writes a small sky: dim, with a bright patch, and one negative pixel if asked.
+fn sky(path: &Path, negative: bool) {
+    let pixel = |x: usize, y: usize| match (x, y) {
+        (40..42, 9) => (900.0f32, 800.0f32, 500.0f32),
+        (3, 30) if negative => (-0.25, 0.5, 0.5),
+        _ => (0.1, 0.2, 0.5),
+    };
+    if path.extension().is_some_and(|extension| extension == "exr") {
+        return exr::prelude::write_rgb_file(path, 64, 32, pixel).unwrap();
+    }
+    let image = ImageBuffer::from_fn(64, 32, |x, y| {
+        let (red, green, blue) = pixel(x as usize, y as usize);
+        Rgb([red, green, blue])
+    });
+    image::DynamicImage::ImageRgb32F(image).save(path).unwrap();
+}
+
+fn table(output: &Output) -> Vec<[f64; 7]> {
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("x,y,z,pdf,red,green,blue"));
+    lines
+        .map(|line| {
+            let numbers: Vec<f64> = line.split(',').map(|n| n.parse().unwrap()).collect();
+            numbers.try_into().unwrap()
+        })
+        .collect()
+}
+
+#[test]
+fn directions_estimate_the_light_of_the_map() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, tolerance) in [("sky.exr", 0.02), ("sky.hdr", 0.03)] {
+        let path = folder.path().join(name);
+        sky(&path, false);
+        // All light: solid angles of the rows, exactly.
+        let row = |y: f64| (std::f64::consts::PI * y / 32.0).cos();
+        let pixel = |y: f64| std::f64::consts::TAU / 64.0 * (row(y) - row(y + 1.0));
+        let truth = 0.2 * 4.0 * std::f64::consts::PI + 2.0 * (800.0 - 0.2) * pixel(9.0);
+        for method in ["progressive", "warp"] {
+            let map = path.to_str().unwrap();
+            let output = run(&["envmap", map, "-n", "1000", "-o", "-", "--method", method]);
+            let lights = table(&output);
+            assert_eq!(lights.len(), 1000);
+            let mut green = 0.0;
+            for [x, y, z, pdf, _, g, _] in lights {
+                assert!((x * x + y * y + z * z - 1.0).abs() < 1e-14);
+                green += g / (1000.0 * pdf);
+            }
+            assert!((green / truth - 1.0).abs() < tolerance, "{name} {method}: {green} {truth}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_are_one_line_and_negative_light_needs_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let map = folder.path().join("negative.exr");
+    sky(&map, true);
+    let map = map.to_str().unwrap();
+    let output = run(&["envmap", map, "-n", "10", "-o", "-"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(output.stdout.is_empty());
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(complaint.lines().count(), 1);
+    assert!(complaint.contains("red of pixel (3, 30) is -0.25"), "{complaint}");
+    assert!(complaint.contains("--negative zero"), "{complaint}");
+    let output = run(&["envmap", map, "-n", "10", "-o", "-", "--negative", "zero"]);
+    assert_eq!(table(&output).len(), 10);
+    assert_eq!(table(&run(&["envmap", map, "-n", "0", "-o", "-", "--negative", "zero"])).len(), 0);
+
+    let photo = folder.path().join("photo.png");
+    image::DynamicImage::new_rgb8(4, 4).save(&photo).unwrap();
+    let output = run(&["envmap", photo.to_str().unwrap(), "-n", "10", "-o", "-"]);
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert!(complaint.contains("holds no radiance"), "{complaint}");
+
+    let black = folder.path().join("black.exr");
+    exr::prelude::write_rgb_file(&black, 8, 4, |_, _| (0.0f32, 0.0f32, 0.0f32)).unwrap();
+    let output = run(&["envmap", black.to_str().unwrap(), "-n", "10", "-o", "-"]);
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert!(complaint.contains("is black"), "{complaint}");
+}
+
+#[test]
+fn exact_stippling_has_exactly_as_many_dots_and_grows_by_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let photo = folder.path().join("ramp.png");
+    let image = ImageBuffer::from_fn(120, 90, |x, y| image::Luma([(x + y) as u8]));
+    image::DynamicImage::ImageLuma8(image).save(&photo).unwrap();
+    let photo = photo.to_str().unwrap();
+    let dots = |n: &str| {
+        let output = run(&["stipple", photo, "--exact", n, "-o", "-", "--quiet"]);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let all = dots("1234");
+    assert_eq!(all.lines().count(), 1 + 1234);
+    for n in ["0", "1", "500"] {
+        let some = dots(n);
+        assert_eq!(some.lines().count(), 1 + n.parse::<usize>().unwrap());
+        assert!(all.starts_with(&some));
+    }
+    let both = run(&["stipple", photo, "--exact", "5", "-n", "5", "-o", "-"]);
+    assert_eq!(both.status.code(), Some(2));
+}

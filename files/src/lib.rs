@@ -1,0 +1,14 @@
+//! Pictures in, files out: what the programs share. A photograph becomes importance, an environment map
+//! radiance, a list points; a result becomes a file that appears whole or not at all.
+
+#![allow(
+    missing_docs,
+    reason = "for the programs of this workspace only; what a name does not say is documented"
+)]
+
+pub mod failure;
+mod interrupt;
+pub mod output;
+pub mod picture;
+pub mod point_list;
+pub mod progress;

@@ -1,0 +1,5 @@
+//! The subcommands, a module each.
+
+pub(crate) mod figures;
+pub(crate) mod report;
+pub(crate) mod train;

@@ -1,0 +1,96 @@
+//! Measures of point sets, as the literature on blue noise and stippling uses them.
+//!
+//! Distances are in units of the hexagonal lattice of equal density, which no point set can exceed in
+//! its least distance; spectra are in units of white noise; variances in units of a Poisson process.
+//! So every figure is a pure number and sets of different sizes compare.
+//!
+//! | measure | unit | white noise | hexagonal lattice |
+//! |---|---|---|---|
+//! | [`nearest`]: mean, least, percentile | hexagonal distance | 0.465, 0, – | 1, 1, 1 |
+//! | [`spectrum`]: power at low frequency | white noise | 1 | 0 |
+//! | [`fidelity`]: variance of counts in blocks | Poisson | 1 | about 0.03 |
+//!
+//! A [`Window`] keeps borders from biasing: points outside it serve as neighbours only.
+
+pub mod discrepancy;
+pub mod fidelity;
+pub mod nearest;
+pub mod periodogram;
+pub mod spectrum;
+
+use glam::DVec2;
+
+/// A half-open rectangle [min, min + size) inside a point set, in the units of the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The corner with the least coordinates.
+    pub min: DVec2,
+    /// Width and height, positive.
+    pub size: DVec2,
+}
+
+impl Window {
+    /// The window with these corner and extent.
+    #[must_use]
+    pub const fn new(min: DVec2, size: DVec2) -> Self {
+        Self { min, size }
+    }
+
+    /// Whether `point` lies in [min, min + size).
+    #[must_use]
+    pub fn contains(&self, point: DVec2) -> bool {
+        let relative = point - self.min;
+        relative.cmpge(DVec2::ZERO).all() && relative.cmplt(self.size).all()
+    }
+
+    /// Its area.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.size.x * self.size.y
+    }
+
+    /// The window smaller by `margin` on every side, not below an extent of 0.
+    #[must_use]
+    pub fn shrunk(&self, margin: f64) -> Self {
+        let size = (self.size - DVec2::splat(2.0 * margin)).max(DVec2::ZERO);
+        Self { min: self.min + DVec2::splat(margin), size }
+    }
+}
+
+/// Distance between neighbours in a hexagonal lattice of `density` points a unit of area: √(2 / (√3·ρ)).
+#[must_use]
+pub fn hexagonal_distance(density: f64) -> f64 {
+    libm::sqrt(2.0 / (twelvefold::tiling::cyclotomic::SQRT_3 * density))
+}
+
+/// How even a set of one density is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evenness {
+    /// Points in the window.
+    pub count: usize,
+    /// Mean power below half the principal frequency, white noise = 1.
+    pub low_frequency: f64,
+    /// Mean distance to the nearest point, hexagonal lattice = 1.
+    pub mean_distance: f64,
+    /// Least distance between two points, hexagonal lattice = 1.
+    pub least_distance: f64,
+}
+
+/// Measures the points of a uniform density in `window`. Points outside it may be given and should be:
+/// a point at the border has its nearest neighbour there. `None` for fewer than 2 points.
+///
+/// Costs O(n log n) for the distances and O(n²) for the spectrum, 0.3 s for 16,384 points.
+#[must_use]
+pub fn evenness(points: &[DVec2], window: Window) -> Option<Evenness> {
+    let inside: Vec<DVec2> = points.iter().copied().filter(|p| window.contains(*p)).collect();
+    let density = inside.len() as f64 / window.area();
+    let distances = nearest::distances(points, &inside);
+    let unit = hexagonal_distance(density);
+    let summary = nearest::Summary::new(distances.iter().map(|d| d / unit).collect())?;
+    Some(Evenness {
+        count: inside.len(),
+        low_frequency: spectrum::low_frequency_power(&inside, window)?,
+        mean_distance: summary.mean(),
+        least_distance: summary.least(),
+    })
+}
