@@ -57,7 +57,7 @@ fn update(criterion: &mut Criterion) {
         ("whole, u8", PixelData::U8(&bytes), 1024),
         ("64 × 64, f32", PixelData::F32(&pixels), 64),
     ] {
-        let view = PixelView::with_stride(data, size, size, 1024).expect("pixels enough");
+        let view = PixelView::strided(data, size, size, 1024).expect("pixels enough");
         group.bench_function(name, |bencher| {
             bencher.iter(|| map.update_at(0, 0, &view, InvalidPixels::Reject));
         });

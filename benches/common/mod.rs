@@ -79,7 +79,7 @@ fn ours<'a, I: Importance + 'a>(
         let importance = importance(n);
         // The seed whose number is nearest to the expected one: the time a point is compared.
         let placements: Vec<_> =
-            (0..8).map(|seed| Placement::with_tables(domain, seed, tables)).collect();
+            (0..8).map(|seed| Placement::new_in(domain, seed, tables)).collect();
         let mut buffer = vec![Vec2::ZERO; n + n / 8 + 64];
         let mut off = |placement: &Placement<'_>| {
             let sampling = sampling(placement, &importance, n, relaxed);
@@ -140,13 +140,13 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
         // Kept for the whole run.
         let tables = Tables::from_bytes(bytes.leak()).expect("baked just now");
         let name = format!("twelvefold, baked depth {depth}");
-        all.push(ours(&name, Domain::unit(), tables, false, |_| Constant::ONE));
+        all.push(ours(&name, Domain::UNIT, tables, false, |_| Constant::ONE));
     }
     let tables = Tables::built_in();
-    all.push(ours("twelvefold, relaxed", Domain::unit(), tables, true, |_| Constant::ONE));
+    all.push(ours("twelvefold, relaxed", Domain::UNIT, tables, true, |_| Constant::ONE));
     #[cfg(feature = "parallel")]
     for relaxed in [false, true] {
-        all.push(two_threads(Domain::unit(), relaxed, &Constant::ONE));
+        all.push(two_threads(Domain::UNIT, relaxed, &Constant::ONE));
     }
     all.extend(peers::uniform());
     all

@@ -9,7 +9,7 @@
 
 use glam::DVec2;
 use twelvefold::Tables;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold_lab::measure::{Evenness, Window, evenness};
 use twelvefold_lab::random::Random;
 use twelvefold_lab::train::report::{phase, uniform, worst};
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
 
     let rules = Tables::built_in().rules();
-    let table = Relaxation::from_bytes(include_bytes!("../../tables/relaxed.bin"))?;
+    let table = Displacements::from_bytes(include_bytes!("../../tables/relaxed.bin"))?;
     for (name, table) in [("relaxed", Some(&table)), ("fixed centres", None)] {
         let mut measured = Vec::new();
         for k in 0..16 {

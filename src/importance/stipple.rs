@@ -11,17 +11,17 @@
 //! 4. *detail*: standard deviation over mean, in a box of half-side s, 0.03 … 0.15 taken to 0 … 1.
 //!
 //! Points read them bilinearly. The boxes of the means do not depend on the pixel's own value, so that
-//! the number of points stays unbiased. Averaging alone would soften edges; so a point goes only where
+//! the number of points unconstrained unbiased. Averaging alone would soften edges; so a point goes only where
 //! the image itself, the pixel under it, asks for points of its rank.
 
 use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::interpolation::{Grid, RUN};
+use super::raster::{Grid, RUN};
 use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError};
-use crate::domain::{Domain, Region};
-use crate::walk::scalar::Scalar;
+use crate::domain::{Disc, Domain};
+use crate::position::Scalar;
 
 /// No box grows past this many spacings of the mean importance.
 const LARGEST_SPACING: f64 = 1.5;
@@ -226,11 +226,11 @@ impl Importance for StippleMap {
         self.acceptance.values(origin, x, y, values);
     }
 
-    fn upper_bound(&self, region: &Region) -> f64 {
+    fn upper_bound(&self, region: &Disc) -> f64 {
         self.acceptance.upper_bound(region)
     }
 
-    fn lower_bound(&self, region: &Region) -> f64 {
+    fn lower_bound(&self, region: &Disc) -> f64 {
         self.acceptance.lower_bound(region)
     }
 
@@ -270,13 +270,13 @@ impl Importance for StippleMap {
     }
 
     #[inline(always)]
-    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
-        for (((x, y), needed), stays) in x.iter().zip(y).zip(needed).zip(stays) {
-            *stays = u8::from(self.admits(DVec2::new(*x, *y), *needed));
+    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
+        for (((x, y), needed), unconstrained) in x.iter().zip(y).zip(needed).zip(unconstrained) {
+            *unconstrained = u8::from(self.admits(DVec2::new(*x, *y), *needed));
         }
     }
 
-    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let allowed = |p: DVec2| self.admits(p, needed);
         if allowed(moved) {
             return moved;
@@ -290,7 +290,7 @@ impl Importance for StippleMap {
         if length > 0.0 {
             // Where points are denser than pixels, the next pixel is farther than the next point.
             let step = gradient * (spacing.max(1.0) / (f64::from(RETREATS) * length));
-            // From its tile's centre only if relaxation took it too far down.
+            // From its tile's centre only if displacements took it too far down.
             for from in [moved, centre] {
                 for i in 1..=RETREATS {
                     let p = from + step * f64::from(i);
@@ -309,7 +309,7 @@ impl Importance for StippleMap {
         centre
     }
 
-    fn longest_settling(&self) -> f64 {
+    fn longest_constraint(&self) -> f64 {
         self.largest_spacing.max(1.0)
     }
 }
@@ -374,7 +374,7 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::seed::SplitMix64;
+    use crate::random::SplitMix64;
 
     #[test]
     fn many_at_once_are_the_single_ones() {
@@ -388,17 +388,17 @@ mod tests {
         };
         let (x, y, needed) = (coordinate(40.0), coordinate(30.0), coordinate(1.0));
         let (mut values, mut local) = ([0.0; 200], [0.5; 200]);
-        let (mut detail, mut stays) = ([0.0; 200], [9; 200]);
+        let (mut detail, mut unconstrained) = ([0.0; 200], [9; 200]);
         map.values(DVec2::ZERO, &x, &y, &mut values);
         map.surroundings(&x, &y, &mut local, &mut detail);
-        map.stays(&x, &y, &needed, &mut stays);
+        map.unconstrained(&x, &y, &needed, &mut unconstrained);
         let mut moved = 0;
         for i in 0..200 {
             let at = DVec2::new(x[i], y[i]);
             assert_eq!(values[i], map.value(at));
             assert_eq!((local[i], detail[i]), (map.local(at, 0.5), map.detail(at)));
-            let settled = map.settle(DVec2::new(20.0, 15.0), at, needed[i]);
-            assert_eq!(stays[i] == 1, settled == at);
+            let settled = map.constrain(DVec2::new(20.0, 15.0), at, needed[i]);
+            assert_eq!(unconstrained[i] == 1, settled == at);
             moved += usize::from(settled != at);
         }
         assert!((20..180).contains(&moved), "{moved}");

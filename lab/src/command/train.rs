@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use twelvefold::Tables;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold::tiling::{Digits, OutOfRange, Rules};
 use twelvefold_lab::measure::Evenness;
 use twelvefold_lab::train::{Recipe, report};
@@ -60,9 +60,9 @@ fn rules(digits: Option<&Path>) -> Result<Rules, Failure> {
     Rules::new(&digits).map_err(|error| Failure::at(path, error))
 }
 
-fn read(path: &Path, rules: &Rules) -> Result<Relaxation, Failure> {
+fn read(path: &Path, rules: &Rules) -> Result<Displacements, Failure> {
     let bytes = fs::read(path).map_err(|error| Failure::at(path, error))?;
-    let table = Relaxation::from_bytes(&bytes).map_err(|error| Failure::at(path, error))?;
+    let table = Displacements::from_bytes(&bytes).map_err(|error| Failure::at(path, error))?;
     if !table.fits(rules.digits()) {
         return Err(Failure::at(path, "trained for another digit assignment"));
     }
@@ -74,7 +74,7 @@ fn train(
     path: &Path,
     rules: &Rules,
     pool: &rayon::ThreadPool,
-) -> Result<Relaxation, Failure> {
+) -> Result<Displacements, Failure> {
     let recipe = if options.tiny { Recipe::tiny() } else { Recipe::standard() };
     // Before minutes of work rather than after.
     let mut output = Output::create(path).map_err(|error| Failure::at(path, error))?;
@@ -114,7 +114,7 @@ fn bar(sweeps: usize, quiet: bool) -> ProgressBar {
 }
 
 /// The figures of the table beside those of fixed centres, on places that training never saw.
-fn description(rules: &Rules, table: &Relaxation) -> Result<String, OutOfRange> {
+fn description(rules: &Rules, table: &Displacements) -> Result<String, OutOfRange> {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "provenance  {}", table.provenance);

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::random::Random;
 use twelvefold::bake::class::Classes;
-use twelvefold::tiling::cyclotomic::SQRT_3;
+use twelvefold::tiling::numbers::SQRT_3;
 use twelvefold::tiling::{Cyclotomic, FCode, OutOfRange, Rules, Tile, TileCounts, TileType};
 
 /// λ = 2 + √3.

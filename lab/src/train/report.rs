@@ -10,7 +10,7 @@ use super::site::sites;
 use crate::measure::fidelity::{self, Fidelity, Importance};
 use crate::measure::{Evenness, Window, evenness};
 use crate::random::Random;
-use twelvefold::bake::relaxation::{DELTA, Relaxation};
+use twelvefold::bake::displacement::{DELTA, Displacements};
 use twelvefold::tiling::{OutOfRange, Rules};
 
 /// Points of uniform phase `tau` in a square window of about `count` of them, at a random place and
@@ -20,7 +20,7 @@ use twelvefold::tiling::{OutOfRange, Rules};
 /// [`OutOfRange`] cannot happen for phases in [1, δ].
 pub fn uniform_window(
     rules: &Rules,
-    table: Option<&Relaxation>,
+    table: Option<&Displacements>,
     tau: f64,
     count: f64,
     random: &mut Random,
@@ -45,7 +45,7 @@ pub fn uniform_window(
 /// As [`uniform_window`].
 pub fn uniform(
     rules: &Rules,
-    table: Option<&Relaxation>,
+    table: Option<&Displacements>,
     tau: f64,
     count: f64,
     random: &mut Random,
@@ -66,7 +66,7 @@ pub fn phase(k: usize, n: usize) -> f64 {
 /// [`OutOfRange`] for an image whose maximum is past some 10⁵ times its mean.
 pub fn image_points<I: twelvefold::Importance + Sync>(
     rules: &Rules,
-    table: Option<&Relaxation>,
+    table: Option<&Displacements>,
     image: &Image<I>,
     random: &mut Random,
 ) -> Result<Vec<DVec2>, OutOfRange> {
@@ -115,7 +115,7 @@ pub fn test_image() -> Vec<f32> {
 /// As [`uniform_window`].
 pub fn uniform_sweep(
     rules: &Rules,
-    table: Option<&Relaxation>,
+    table: Option<&Displacements>,
     phases: usize,
     places: u64,
     seed: u64,
@@ -156,7 +156,7 @@ pub fn worst<'a>(measured: impl IntoIterator<Item = &'a Evenness>) -> Option<Eve
 /// As [`image_points`].
 pub fn image_sweep(
     rules: &Rules,
-    table: Option<&Relaxation>,
+    table: Option<&Displacements>,
     values: &[f32],
     width: usize,
     count: f64,

@@ -6,7 +6,7 @@ use super::force::Law;
 use super::table::Table;
 use super::train::{self, ImagePass, Pass, Stage};
 use crate::random::Random;
-use twelvefold::bake::relaxation::{Relaxation, RelaxationError};
+use twelvefold::bake::displacement::{DisplacementError, Displacements};
 use twelvefold::importance::StippleMap;
 use twelvefold::tiling::{OutOfRange, Rules, TileType};
 
@@ -45,7 +45,7 @@ pub enum TrainError {
     /// A coordinate left its range: a recipe with phases far outside [1, δ].
     Range(OutOfRange),
     /// The result is no valid table: a recipe with an impossible grid, or without a phase.
-    Table(RelaxationError),
+    Table(DisplacementError),
 }
 
 impl fmt::Display for TrainError {
@@ -65,8 +65,8 @@ impl From<OutOfRange> for TrainError {
     }
 }
 
-impl From<RelaxationError> for TrainError {
-    fn from(error: RelaxationError) -> Self {
+impl From<DisplacementError> for TrainError {
+    fn from(error: DisplacementError) -> Self {
         Self::Table(error)
     }
 }
@@ -202,7 +202,7 @@ impl Recipe {
         seed: u64,
         provenance: String,
         progress: &mut dyn FnMut(),
-    ) -> Result<Relaxation, TrainError> {
+    ) -> Result<Displacements, TrainError> {
         let mut number = 0;
         let mut next_seed = || {
             number += 1;
@@ -221,7 +221,7 @@ impl Recipe {
             smooth = Some(table);
         }
         let smooth =
-            smooth.ok_or(TrainError::Table(RelaxationError::SlotCount { layer: 0, found: 0 }))?;
+            smooth.ok_or(TrainError::Table(DisplacementError::SlotCount { layer: 0, found: 0 }))?;
         let rough = match &self.rough {
             Some((grid, passes)) => {
                 let mut table = smooth.resampled(rules, grid.zeros());
@@ -237,6 +237,6 @@ impl Recipe {
             let own = rules.digits().of(kind);
             digits[kind.index()][..own.len()].copy_from_slice(own);
         }
-        Ok(Relaxation { digits, provenance, smooth: smooth.quantized(0)?, rough })
+        Ok(Displacements { digits, provenance, smooth: smooth.quantized(0)?, rough })
     }
 }

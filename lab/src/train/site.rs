@@ -1,13 +1,13 @@
-//! The points of a field on a ground, and where relaxation moves them.
+//! The points of a field on a ground, and where displacements moves them.
 
 use glam::{DVec2, Vec2};
 
 use super::field::{Field, level_of, spacing};
 use super::ground::{Descend, Ground, Region};
 use twelvefold::bake::class::Classes;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold::tiling::OutOfRange;
-use twelvefold::tiling::cyclotomic::SQRT_3;
+use twelvefold::tiling::numbers::SQRT_3;
 
 /// A point before it is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub fn sites(
                     edge,
                     rotation: node.rotations[1],
                     classes: node.classes,
-                    tau: (local / above).clamp(1.0, twelvefold::bake::relaxation::DELTA.into()),
+                    tau: (local / above).clamp(1.0, twelvefold::bake::displacement::DELTA.into()),
                     detail: field.detail(node.centre),
                     spacing: spacing(local),
                 });
@@ -72,7 +72,7 @@ pub fn sites(
 impl Site {
     /// Where the table moves the point, in base edges.
     #[must_use]
-    pub fn relaxed(&self, table: &Relaxation) -> DVec2 {
+    pub fn relaxed(&self, table: &Displacements) -> DVec2 {
         let vector = table.vector(&self.classes, self.tau, self.detail);
         self.centre + turned(Vec2::from(vector).as_dvec2(), self.rotation) * self.edge
     }
@@ -81,7 +81,7 @@ impl Site {
 impl Site {
     /// Where the point goes: [`relaxed`](Self::relaxed), held back by the field's edges.
     #[must_use]
-    pub fn settled(&self, table: &Relaxation, field: &impl Field) -> DVec2 {
+    pub fn settled(&self, table: &Displacements, field: &impl Field) -> DVec2 {
         field.settle(self.centre, self.rank, self.relaxed(table))
     }
 }

@@ -89,7 +89,7 @@ pub(crate) fn filled<I: Importance>(sampling: &Sampling<'_, I>, n: usize) -> Opt
 static EVEN: LazyLock<Option<ImageMap>> = LazyLock::new(|| {
     let side = 64;
     let map = ImageMap::new(side, side, vec![1.0; side * side], InvalidPixels::Reject).ok()?;
-    Some(map.over(Domain::unit()))
+    Some(map.over(Domain::UNIT))
 });
 
 /// Equal weights for points of the unit square.
@@ -112,20 +112,20 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
     Uniform {
         name: "ours, 1/density",
         make: |n, seed| {
-            thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density).map(set)
+            thresholded(Domain::UNIT, &Constant::ONE, n, seed, Weighting::Density).map(set)
         },
     },
     Uniform {
         name: "ours, smoothed",
         make: |n, seed| {
-            thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Smoothed).map(set)
+            thresholded(Domain::UNIT, &Constant::ONE, n, seed, Weighting::Smoothed).map(set)
         },
     },
     Uniform {
         name: "ours, normalised",
         make: |n, seed| {
             let mut points =
-                thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density)?;
+                thresholded(Domain::UNIT, &Constant::ONE, n, seed, Weighting::Density)?;
             normalise(&mut points, n as f64);
             Some(set(points))
         },
@@ -134,7 +134,7 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
         name: "ours, post-stratified",
         make: |n, seed| {
             let mut points =
-                thresholded(Domain::unit(), &Constant::ONE, n, seed, Weighting::Density)?;
+                thresholded(Domain::UNIT, &Constant::ONE, n, seed, Weighting::Density)?;
             post_stratify(&mut points, EVEN.as_ref()?, 6.0);
             Some(set(points))
         },
@@ -142,7 +142,7 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
     Uniform {
         name: "ours, relaxed",
         make: |n, seed| {
-            let placement = Placement::new(Domain::unit(), seed);
+            let placement = Placement::new(Domain::UNIT, seed);
             let sampling =
                 Sampling::new(&placement, &Constant::ONE, Amount::Points(n as f64)).ok()?;
             let weight = 1.0 / n as f64;
@@ -153,14 +153,14 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
     Uniform {
         name: "ours, exactly n",
         make: |n, seed| {
-            let placement = Placement::new(Domain::unit(), seed);
+            let placement = Placement::new(Domain::UNIT, seed);
             exactly(&placement, &Constant::ONE, n, Limits::default()).ok().map(set)
         },
     },
     Uniform {
         name: "ours, complete level",
         make: |n, seed| {
-            let placement = Placement::aligned(Domain::unit(), seed, n as f64).ok()?;
+            let placement = Placement::aligned(Domain::UNIT, seed, n as f64).ok()?;
             let sampling =
                 Sampling::new(&placement, &Constant::ONE, Amount::Density(n as f64)).ok()?;
             let weight = 1.0 / n as f64;
