@@ -162,8 +162,8 @@ fn layers_at() -> usize {
 fn damaged_files_say_what_is_wrong() {
     type E = DisplacementError;
     let error = |bytes: &[u8]| Displacements::from_bytes(bytes).unwrap_err();
-    assert_eq!(error(b""), E::NotARelaxation);
-    assert_eq!(error(&COMMITTED[1..]), E::NotARelaxation);
+    assert_eq!(error(b""), E::NotDisplacements);
+    assert_eq!(error(&COMMITTED[1..]), E::NotDisplacements);
     assert_eq!(error(&MAGIC), E::Truncated { offset: 8 });
     assert_eq!(error(&resealed(|b| b[8] = VERSION as u8 + 1)), E::Version { found: VERSION + 1 });
     let length = (1 << 25) + 1;

@@ -15,21 +15,7 @@ use alloc::vec::Vec;
 use super::class::{Classes, MAX_GENERATIONS, class_count};
 use crate::tiling::{Digits, TileType};
 
-pub use super::displacement_error::DisplacementError;
-
-/// First bytes of the file.
-pub const MAGIC: [u8; 8] = *b"12frelax";
-
-/// Format version, raised by every change of layout or meaning.
-pub const VERSION: u16 = 1;
-
-/// The most bytes of a file that is looked at.
-pub const MAX_BYTES: usize = 1 << 25;
-
-/// The longest vector allowed, in edges of a point's level: some two spacings, which are from one edge
-/// (τ = δ) to λ = 3.7 edges (τ = 1) long. Walks visit all tiles from which a point could move in, so
-/// that their cost and the number of tiles at which they start grow with it.
-pub const MAX_LENGTH: f64 = 8.0;
+pub use super::displacement_error::{DisplacementError, MAGIC, MAX_BYTES, MAX_LENGTH, VERSION};
 
 /// Bytes before the provenance text: magic, version, digits, length of the text.
 const HEADER: usize = 8 + 2 + 4 * 14 + 2;
@@ -273,7 +259,7 @@ impl Displacements {
             return Err(DisplacementError::TooLong { length: bytes.len() });
         }
         if !bytes.starts_with(&MAGIC) {
-            return Err(DisplacementError::NotARelaxation);
+            return Err(DisplacementError::NotDisplacements);
         }
         let mut reader = Reader { bytes, offset: MAGIC.len() };
         let found = u16::from_le_bytes(reader.array()?);

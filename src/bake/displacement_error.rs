@@ -1,11 +1,24 @@
-//! What can be wrong with a file of relaxed offsets.
+//! The limits of a file of displacements, and what can be wrong with one.
 
 use core::fmt;
 
 use super::class::MAX_GENERATIONS;
-use super::displacement::{MAX_BYTES, MAX_LENGTH, VERSION};
 
-/// Why bytes are no relaxation file, or its parts no table. Offsets count bytes from the start.
+/// First bytes of the file.
+pub const MAGIC: [u8; 8] = *b"12frelax";
+
+/// Format version, raised by every change of layout or meaning.
+pub const VERSION: u16 = 1;
+
+/// The most bytes of a file that is looked at.
+pub const MAX_BYTES: usize = 1 << 25;
+
+/// The longest vector allowed, in edges of a point's level: some two spacings, which are from one edge
+/// (τ = δ) to λ = 3.7 edges (τ = 1) long. Walks visit all tiles from which a point could move in, so
+/// that their cost and the number of tiles at which they start grow with it.
+pub const MAX_LENGTH: f64 = 8.0;
+
+/// Why bytes are not a file of displacements, or its parts not a table. Offsets count bytes from the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DisplacementError {
@@ -14,8 +27,8 @@ pub enum DisplacementError {
         /// Bytes given.
         length: usize,
     },
-    /// The file does not begin with [`MAGIC`](super::displacement::MAGIC).
-    NotARelaxation,
+    /// The file does not begin with [`MAGIC`].
+    NotDisplacements,
     /// The file has another version.
     Version {
         /// The version found.
@@ -99,9 +112,11 @@ impl fmt::Display for DisplacementError {
         let name = |layer: &u8| if *layer == 0 { "smooth" } else { "rough" };
         match self {
             Self::TooLong { length } => {
-                write!(f, "{length} bytes, but a relaxation file has at most {MAX_BYTES}")
+                write!(f, "{length} bytes, but a file of displacements has at most {MAX_BYTES}")
             }
-            Self::NotARelaxation => f.write_str("not a relaxation file: it begins otherwise"),
+            Self::NotDisplacements => {
+                f.write_str("not a file of displacements: it begins otherwise")
+            }
             Self::Version { found } => {
                 write!(f, "format version {found}, but this program reads version {VERSION}")
             }
