@@ -301,6 +301,11 @@ impl Importance for ImageMap {
         self.lattice.values(&self.pixels, origin, x, y, values);
     }
 
+    #[inline(always)]
+    fn stays(&self, x: &[f64], y: &[f64], _needed: &[f64], stays: &mut [u8]) {
+        self.lattice.are_above(&self.pixels, x, y, stays);
+    }
+
     fn integral(&self, domain: &Domain) -> Option<f64> {
         if *domain == self.domain {
             return Some(self.mean() * domain.area());
