@@ -1,8 +1,8 @@
 //! Same inputs, same points, bit for bit, in every version until the changelog says otherwise.
 //!
 //! Each line of the golden file is a case, its number of points, and the first 16 hex digits of the
-//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank. The inputs come from integer
-//! arithmetic alone.
+//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank. The inputs come from
+//! integer arithmetic alone.
 
 use std::fmt::Write as _;
 
@@ -149,11 +149,16 @@ fn points_are_those_of_the_golden_file() {
         let sampling = Sampling::new(&placement, &bump, Amount::Density(20_000.0)).unwrap();
         describe(&mut lines, &format!("closure-{seed}"), &sampling);
     }
+    if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
+        let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/points.txt");
+        return std::fs::write(golden, lines).unwrap();
+    }
     let different: Vec<_> =
         lines.lines().zip(GOLDEN.lines()).filter(|(now, golden)| now != golden).collect();
     assert!(
         different.is_empty() && lines.lines().count() == GOLDEN.lines().count(),
-        "{} lines differ, first {:?}; this build makes\n{lines}",
+        "{} lines differ, first {:?}; if that is meant, it is a breaking change: say so in \
+         CHANGELOG.md and write the file anew with TWELVEFOLD_BLESS=1",
         different.len(),
         different.first()
     );

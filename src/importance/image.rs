@@ -221,6 +221,11 @@ impl Importance for ImageMap {
         self.lattice.values(&self.pixels, origin, x, y, values);
     }
 
+    #[inline(always)]
+    fn unconstrained(&self, x: &[f64], y: &[f64], _needed: &[f64], unconstrained: &mut [u8]) {
+        self.lattice.are_above(&self.pixels, x, y, unconstrained);
+    }
+
     fn integral(&self, domain: &Domain) -> Option<f64> {
         if *domain == self.domain {
             return Some(self.mean() * domain.area());

@@ -10,6 +10,7 @@ mod environment;
 mod function;
 mod image;
 mod pixels;
+mod planes;
 mod probed;
 mod raster;
 mod stipple;
@@ -102,25 +103,30 @@ pub trait Importance {
         }
     }
 
-    /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
-    /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
-    /// their side. Not farther from `moved`, or from `centre`, than
-    /// [`longest_constraint`](Self::longest_constraint), unless nearer to `centre` than `moved` is.
+    /// Relaxed points only: where a point goes that is accepted at `centre`, a place of the domain, down
+    /// to importance `needed`, and that relaxation would move to `moved`, another. Never where the
+    /// importance is 0: by default, back towards the centre until it is not. Importance with hard edges
+    /// keeps points on their side. Not farther from `moved` than
+    /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `centre`.
     fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        let _ = (centre, needed);
-        moved
+        let _ = needed;
+        retreat(centre, moved, |at| self.value(at) > 0.0)
     }
 
     /// 1 for each point `(x[i], y[i])` that [`constrain`](Self::constrain) would leave there, moved, down to
-    /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where most stay.
+    /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where many at once
+    /// are cheaper.
     #[inline]
     fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
-        let _ = (x, y, needed);
-        unconstrained.fill(0);
+        let _ = needed;
+        for ((x, y), unconstrained) in x.iter().zip(y).zip(unconstrained) {
+            *unconstrained = u8::from(self.value(DVec2::new(*x, *y)) > 0.0);
+        }
     }
 
-    /// The farthest that [`constrain`](Self::constrain) takes a point away from where displacements moved it, in
-    /// units. 0: it is not asked at all.
+    /// The farthest that [`constrain`](Self::constrain) takes a point away from where relaxation moved it, in
+    /// units, other than towards its centre. 0: it is asked only where
+    /// [`lower_bound`](Self::lower_bound) is 0.
     fn longest_constraint(&self) -> f64 {
         0.0
     }
@@ -138,6 +144,19 @@ pub trait Importance {
         let _ = region;
         false
     }
+}
+
+/// Parts of the way from its centre that a point goes that may not go all of it.
+const WAYS: [f64; 3] = [0.75, 0.5, 0.25];
+
+/// The farthest of some places on the way from `centre` to `moved` where a point may lie; the centre if
+/// there is no other.
+fn retreat(centre: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
+    if may_lie(moved) {
+        return moved;
+    }
+    let places = WAYS.iter().map(|way| centre + (moved - centre) * *way);
+    places.into_iter().find(|at| may_lie(*at)).unwrap_or(centre)
 }
 
 /// What a reference does: everything that it refers to.

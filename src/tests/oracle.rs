@@ -59,7 +59,10 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
                 Some(table) => {
                     let moved = fixed + step(sampling, table, at, value, &path);
                     let needed = sampling.scale().importance_of(rank);
-                    sampling.importance().constrain(fixed, moved, needed)
+                    match domain.contains(moved) {
+                        true => sampling.importance().constrain(at, moved, needed),
+                        false => moved,
+                    }
                 }
                 None => fixed,
             };

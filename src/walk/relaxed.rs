@@ -12,6 +12,7 @@ use super::ancestry::{Ancestry, ClassFormula};
 use super::candidates::Candidates;
 use super::chunk::{CHUNK, Chunk};
 use super::context::Context;
+use crate::domain::Disc;
 use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::{FIRST_RELAXED_LEVEL, Placement};
@@ -240,14 +241,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 [dx[k], dy[k]] = self.step(chunk, run.start + k);
             }
         }
-        if sampling.importance().longest_constraint() > 0.0 {
-            self.constrain(chunk, run, &dx, &dy);
-        } else {
-            let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
-            for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
-                (*x, *y) = (*x + *dx, *y + *dy);
-            }
-        }
+        self.constrain(chunk, run, &dx, &dy);
     }
 
     /// Moves points by steps, or to where the importance lets them go.
@@ -264,30 +258,41 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let corner = placement.domain().min();
         let block = self.batch.block(placement);
         let len = run.len().min(RUN);
-        let (mut moved_x, mut moved_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        // Where the points are moved, or the nearest place in the domain: out of it they end.
+        let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        let (mut low, mut high) = (self.high, self.low);
         for k in 0..len {
             let i = run.start + k;
-            moved_x[k] = corner.x + (chunk.x[i] + dx[k]).to_f64();
-            moved_y[k] = corner.y + (chunk.y[i] + dy[k]).to_f64();
-            needed[k] = scale.importance_of(self.batch.rank(block, chunk.entry[i].into()));
+            let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
+            [at_x[k], at_y[k]] = moved.to_array();
+            (low, high) = (low.min(moved), high.max(moved));
         }
-        let mut unconstrained = [0u8; RUN];
-        importance.unconstrained(
-            &moved_x[..len],
-            &moved_y[..len],
-            &needed[..len],
-            &mut unconstrained[..len],
-        );
+        let mut unconstrained = [1u8; RUN];
+        let radius = 0.5 * (high - low).length() * (1.0 + 1e-9);
+        let all = Disc { centre: 0.5 * (low + high), radius };
+        if importance.longest_constraint() > 0.0 || importance.lower_bound(&all) <= 0.0 {
+            for (k, needed) in needed[..len].iter_mut().enumerate() {
+                let entry = chunk.entry[run.start + k].into();
+                *needed = scale.importance_of(self.batch.rank(block, entry));
+            }
+            importance.unconstrained(
+                &at_x[..len],
+                &at_y[..len],
+                &needed[..len],
+                &mut unconstrained[..len],
+            );
+        }
         for k in 0..len {
             let i = run.start + k;
             let (x, y) = (chunk.x[i], chunk.y[i]);
             (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
             if unconstrained[k] == 0 {
-                let centre = corner + DVec2::new(x.to_f64(), y.to_f64());
-                let moved = DVec2::new(moved_x[k], moved_y[k]);
-                let settled = importance.constrain(centre, moved, needed[k]);
-                if settled != moved {
-                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+                let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+                if moved == DVec2::new(at_x[k], at_y[k]) {
+                    let settled = importance.constrain(self.nearest(x, y), moved, needed[k]);
+                    if settled != moved {
+                        [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+                    }
                 }
             }
         }

@@ -79,6 +79,25 @@ impl Lattice {
         }
     }
 
+    /// Whether the pixels under the points (x[i], y[i]) are above 0: 1 or 0.
+    #[inline(always)]
+    pub(in crate::importance) fn are_above(
+        &self,
+        pixels: &[f32],
+        x: &[f64],
+        y: &[f64],
+        above: &mut [u8],
+    ) {
+        let mut values = [0.0; RUN];
+        for ((above, x), y) in above.chunks_mut(RUN).zip(x.chunks(RUN)).zip(y.chunks(RUN)) {
+            let values = &mut values[..x.len()];
+            self.values(pixels, DVec2::ZERO, x, y, values);
+            for (above, value) in above.iter_mut().zip(values) {
+                *above = u8::from(*value > 0.0);
+            }
+        }
+    }
+
     /// For discs of one radius around `origin` + (x[i], y[i]): first and last column and row, in
     /// texels of 2^shift pixels each way, of their bounding squares. Returns shift, the least at which
     /// no square touches more than three columns or rows.
