@@ -50,7 +50,7 @@
 //! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
 //! - `train`: the module `relax`, which trains relaxed offsets;
 //! - `cli` (default): the program and all that it needs;
-//! - `std`: glam and serde use `std`.
+//! - `std`: the module [`refine`]; glam and serde use `std`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
@@ -80,6 +80,8 @@ pub mod paper;
 mod parallel;
 mod placement;
 mod points;
+#[cfg(feature = "std")]
+pub mod refine;
 #[cfg(feature = "train")]
 pub mod relax;
 mod relaxed;
