@@ -17,7 +17,7 @@ fn scattered(n: usize, width: f64, height: f64) -> Vec<DVec2> {
     let unit = |bits: u64| (bits >> 11) as f64 / (1_u64 << 53) as f64;
     (0..n as u64)
         .map(|i| {
-            let a = mix(2 * i * 0x9e37_79b9_7f4a_7c15_u64 % u64::MAX + 1);
+            let a = mix((i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
             DVec2::new(unit(a) * width, unit(mix(a)) * height)
         })
         .collect()
@@ -90,4 +90,21 @@ fn random_dots_on_even_ground_become_even() {
     let distances: Vec<f64> = (0..points.len()).map(nearest).collect();
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     assert!(mean > 0.8, "{mean}");
+}
+
+#[test]
+fn stopping_early_is_asking_for_fewer() {
+    let pixels: Vec<f32> = (0..30 * 20).map(|i| (i % 30) as f32).collect();
+    let start = scattered(700, 30.0, 20.0);
+    let mut asked = start.clone();
+    refine(&mut asked, 30, 20, &pixels, 3).unwrap();
+    let mut refiner = Refiner::new(30, 20, &pixels, &start).unwrap();
+    let mut shown = start.clone();
+    for _ in 0..3 {
+        refiner.step();
+        refiner.write(&mut shown).unwrap();
+    }
+    assert_eq!(asked, shown);
+    let short = RefineError::Length { expected: 700, found: 699 };
+    assert_eq!(refiner.write(&mut shown[1..]), Err(short));
 }
