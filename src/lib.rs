@@ -50,7 +50,7 @@
 //! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
 //! - `train`: the module `relax`, which trains relaxed offsets;
 //! - `cli` (default): the program and all that it needs;
-//! - `std`: glam and serde use `std`.
+//! - `std`: the module [`refine`]; glam and serde use `std`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
@@ -72,6 +72,8 @@ mod placement;
 mod position;
 #[doc(hidden)]
 pub mod random;
+#[cfg(feature = "std")]
+pub mod refine;
 mod sampling;
 mod simd;
 mod tables;
