@@ -4,5 +4,6 @@
 pub mod measure;
 pub mod paper;
 pub mod random;
+pub mod stipplers;
 #[cfg(feature = "program")]
 pub mod train;
