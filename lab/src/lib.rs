@@ -9,6 +9,7 @@ pub mod maps;
 pub mod measure;
 pub mod paper;
 pub mod random;
+pub mod stipplers;
 #[cfg(feature = "program")]
 pub mod rivals;
 #[cfg(feature = "program")]
