@@ -9,8 +9,8 @@ pub mod maps;
 pub mod measure;
 pub mod paper;
 pub mod random;
-pub mod stipplers;
 #[cfg(feature = "program")]
 pub mod rivals;
+pub mod stipplers;
 #[cfg(feature = "program")]
 pub mod train;
