@@ -70,6 +70,7 @@ mod domain;
 mod effort;
 mod environment;
 pub mod estimate;
+pub mod export;
 pub mod importance;
 #[cfg(test)]
 mod oracle;
