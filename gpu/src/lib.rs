@@ -11,7 +11,7 @@ mod tiles;
 
 pub use error::GpuError;
 pub use keys::{Keys, NO_KEY};
-pub use plan::{Binding, Capacity, Groups, Order, Pass, Plan};
+pub use plan::{Binding, Capacity, Groups, Order, Pass, Plan, Points, RELAXED_ERROR};
 #[cfg(feature = "wgpu")]
 pub use sampler::{Importance, Sampler};
 pub use shader::{Arithmetic, Source, wgsl};

@@ -1,6 +1,7 @@
 //! A plan: everything that one placement, one size of importance and one capacity need, as plain data.
 
 use twelvefold::Placement;
+use twelvefold::bake::relaxation::DELTA;
 use twelvefold::export::{Export, ToCaller};
 
 use crate::error::GpuError;
@@ -17,6 +18,22 @@ pub enum Order {
     /// As they come: a pass less, another order at every run.
     Append,
 }
+
+/// Where points are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Points {
+    /// At their tiles' centers: bits of the CPU's.
+    #[default]
+    Fixed,
+    /// Moved aside, even at every density, as [`Sampling::relaxed`](twelvefold::Sampling::relaxed) has it
+    /// for an image map; not for estimates. Positions differ from the CPU's by up to [`RELAXED_ERROR`].
+    Relaxed,
+}
+
+/// How far a relaxed point is from the CPU's at most: so many edges of its level, some 10⁻⁴ of the distance
+/// between points, because the density phase has the precision of `f32`; and the rounding of a coordinate.
+/// A point that the CPU moves as near to the domain's border may be lost or found.
+pub const RELAXED_ERROR: f64 = 1e-4;
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,6 +182,7 @@ impl Plan {
         (width, height): (u32, u32),
         capacity: Capacity,
         order: Order,
+        points_are: Points,
         vertices: u32,
     ) -> Result<Self, GpuError> {
         let side = 1..=8192;
@@ -185,10 +203,16 @@ impl Plan {
         }
         let caller = ToCaller::of(&domain).map_err(|_| GpuError::Domain { diagonal })?;
         let export = Export::of(placement);
-        let reach = Reach { domain, export: &export, longest: 0.0 };
+        let relaxed = points_are == Points::Relaxed;
+        let longest = match (relaxed, placement.tables().to_relaxation()) {
+            (true, Some(relaxation)) => relaxation.smooth.longest(1.0, DELTA.into()),
+            (true, None) => return Err(GpuError::NoRelaxation),
+            (false, _) => 0.0,
+        };
+        let reach = Reach { domain, export: &export, longest };
         let (StartTiles { words: tiles, count: tile_count, keys }, _) =
             start_tiles(placement, &reach, points)?;
-        let table = TableWords::new(placement, (width, height), false)?;
+        let table = TableWords::new(placement, (width, height), relaxed)?;
         let (mip, mips, pyramid_words) = mips(width, height);
         let texels = glam::DVec2::new(width.into(), height.into()) / domain.size();
         let single = |v: glam::DVec2| v.to_array().map(|x| x as f32);
@@ -205,7 +229,7 @@ impl Plan {
             Level {
                 edge: single(export.half_edges[i]),
                 reach: (near as f32).next_up(),
-                margin: 0.0,
+                margin: if relaxed { (reach.margin(i as u8) as f32).next_up() } else { 0.0 },
                 tiles: [here as u32, (here >> 32) as u32],
                 before: [before as u32, (before >> 32) as u32],
                 tiles_near: here as f32,
@@ -229,7 +253,7 @@ impl Plan {
             capacity: [points, candidates, subtiles, vertices],
             table: [table.coefficients, table.offsets, table.columns, table.rows],
             moves: [table.thirds, table.edges, table.slots, table.phases],
-            more: [table.vectors, table.slot_count, crate::tiles::TILE_WORDS as u32 * tile_count, 0],
+            more: [table.vectors, table.slot_count, crate::tiles::TILE_WORDS as u32 * tile_count, relaxed.into()],
             work: [sums, subtile_words, subtile_words + 3 * subtiles, 0],
             mip,
             levels,

@@ -41,7 +41,7 @@ pub fn wgsl(source: Source) -> String {
         include_str!("shaders/pyramid.wgsl"),
         include_str!("shaders/classify.wgsl"),
         include_str!("shaders/points.wgsl"),
-        include_str!("shaders/fixed.wgsl"),
+        include_str!("shaders/moved.wgsl"),
     ]
     .concat()
 }

@@ -18,17 +18,23 @@ fn source_of(index: u32, first: u32, last: u32) -> u32 {
     return low;
 }
 
-struct Candidate { node: Node, entry: u32, ab: u32, at: vec2<f32> }
+// Entry `entry` of the tile that a path of `depth` digits leads to from a start tile.
+struct Candidate {
+    node: Node, entry: u32, ab: u32, at: vec2<f32>,
+    tile: u32, path: u32, depth: u32,
+}
 
 fn candidate_at(index: u32, first: u32, last: u32) -> Candidate {
     let source = source_of(index, first, last);
     let entry = index - candidates_before(source);
-    var node: Node;
-    if source < placed.tiles { node = load_tile(source); }
-    else {
+    var tile = source; var path = 0u; var depth = 0u;
+    if source >= placed.tiles {
         let at = placed.work.y + 3u * (source - placed.tiles);
-        node = descend(work[at + 1u], work[at + 2u] & 0xffffu, work[at + 2u] >> 16u);
+        tile = work[at + 1u];
+        path = work[at + 2u] & 0xffffu;
+        depth = work[at + 2u] >> 16u;
     }
+    let node = descend(tile, path, depth);
     // In edges of the level of its birth.
     var center = node.center;
     var level = node.level;
@@ -41,7 +47,7 @@ fn candidate_at(index: u32, first: u32, last: u32) -> Candidate {
         center += offset_of(node, entry);
     }
     return Candidate(node, entry, coefficients(node, entry),
-        place(center, placed.levels[level].edge, placed.origin));
+        place(center, placed.levels[level].edge, placed.origin), tile, path, depth);
 }
 
 // By the least coordinate of each texel as the library has it, from a guess.

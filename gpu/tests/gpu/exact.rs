@@ -6,26 +6,26 @@ use glam::{DVec2, Vec2};
 use twelvefold::{
     Amount, Domain, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError,
 };
-use twelvefold_gpu::{Arithmetic, Capacity, Importance, Order, Plan, Source};
+use twelvefold_gpu::{Arithmetic, Capacity, Importance, Order, Plan, Points, Source};
 
 use crate::device::{Device, Output, device};
 
 /// Ranks and bits, by rank.
-type Points = Vec<(u64, [u32; 2])>;
+type Ranked = Vec<(u64, [u32; 2])>;
 
 /// A picture, and the density at which about so many points are made.
 pub(crate) struct Case {
-    domain: Domain,
-    placement: Placement<'static>,
-    width: usize,
-    height: usize,
-    pixels: Vec<f32>,
-    density: f64,
-    points: f64,
+    pub(crate) domain: Domain,
+    pub(crate) placement: Placement<'static>,
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) pixels: Vec<f32>,
+    pub(crate) density: f64,
+    pub(crate) points: f64,
 }
 
 impl Case {
-    fn new(
+    pub(crate) fn new(
         domain: Domain,
         seed: u64,
         (width, height): (usize, usize),
@@ -43,7 +43,7 @@ impl Case {
         Self { domain, placement, width, height, pixels, density, points }
     }
 
-    fn cpu(&self) -> Result<Points, SamplingError> {
+    fn cpu(&self) -> Result<Ranked, SamplingError> {
         let map = ImageMap::new(self.width, self.height, self.pixels.clone(), InvalidPixels::ZeroAll)
             .unwrap()
             .over(self.domain);
@@ -59,10 +59,10 @@ impl Case {
 
     fn plan(&self, capacity: Capacity, order: Order) -> Plan {
         let size = (self.width as u32, self.height as u32);
-        Plan::new(&self.placement, size, capacity, order, 4).unwrap()
+        Plan::new(&self.placement, size, capacity, order, Points::Fixed, 4).unwrap()
     }
 
-    fn room(&self) -> Capacity {
+    pub(crate) fn room(&self) -> Capacity {
         Capacity::points((1.1 * self.points) as u32 + 1000)
     }
 
@@ -83,17 +83,17 @@ impl Case {
     }
 }
 
-fn by_rank(plan: &Plan, output: &Output) -> Points {
+fn by_rank(plan: &Plan, output: &Output) -> Ranked {
     let rank = |key: &u32| plan.keys().rank(*key).unwrap();
-    let mut points: Points =
+    let mut points: Ranked =
         output.keys.iter().map(rank).zip(output.positions.iter().copied()).collect();
     points.sort_unstable();
     points
 }
 
-fn same(cpu: &Points, gpu: &Points) {
+fn same(cpu: &Ranked, gpu: &Ranked) {
     if cpu != gpu {
-        let only = |a: &Points, b: &Points| {
+        let only = |a: &Ranked, b: &Ranked| {
             a.iter().filter(|p| b.binary_search_by_key(&p.0, |q| q.0).is_err()).count()
         };
         let (missing, extra) = (only(cpu, gpu), only(gpu, cpu));
@@ -101,22 +101,22 @@ fn same(cpu: &Points, gpu: &Points) {
     }
 }
 
-fn smooth(x: f64, y: f64) -> f64 {
+pub(crate) fn smooth(x: f64, y: f64) -> f64 {
     1.2 + (7.0 * x).sin() * (5.0 * y + 2.0 * x).cos()
 }
 
-fn noise(x: f64, y: f64) -> f64 {
+pub(crate) fn noise(x: f64, y: f64) -> f64 {
     let n = (x * 7919.0 + y * 104_729.0).to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
     n as f64 / (1u64 << 24) as f64
 }
 
 /// A sun a thousand times as bright as the sky.
-fn peak(x: f64, y: f64) -> f64 {
+pub(crate) fn peak(x: f64, y: f64) -> f64 {
     let squared = (x - 0.7).powi(2) + (y - 0.3).powi(2);
     0.2 + 0.8 * y + 1e3 * (-squared / 2e-4).exp()
 }
 
-fn rectangle(min: [f64; 2], size: [f64; 2]) -> Domain {
+pub(crate) fn rectangle(min: [f64; 2], size: [f64; 2]) -> Domain {
     Domain::new(DVec2::from(min), DVec2::from(size)).unwrap()
 }
 

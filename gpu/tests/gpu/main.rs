@@ -3,3 +3,4 @@
 
 mod device;
 mod exact;
+mod relaxed;
