@@ -8,7 +8,9 @@ use std::fs::File;
 use std::io::BufWriter;
 
 use twelvefold::{Domain, Placement};
-use twelvefold_gpu::{Arithmetic, Capacity, Importance, Order, Plan, Points, Sampler, Source, Status};
+use twelvefold_gpu::{
+    Arithmetic, Capacity, Importance, Order, Plan, Points, Sampler, Source, Status,
+};
 
 /// The importance's texels a side, and the picture's pixels.
 const TEXELS: u32 = 512;
@@ -68,13 +70,8 @@ async fn run(points: u32, file: &str) -> Result<(), Box<dyn Error>> {
     });
     let radius = (0.3 / f64::from(points).sqrt()).max(0.4 / f64::from(PIXELS));
     let paint = pipeline(&device, &module, ("whole", "paint"), wgpu::TextureFormat::R16Float, None);
-    let draw = pipeline(
-        &device,
-        &module,
-        ("quad", "ink"),
-        wgpu::TextureFormat::Rgba8Unorm,
-        Some(radius),
-    );
+    let draw =
+        pipeline(&device, &module, ("quad", "ink"), wgpu::TextureFormat::Rgba8Unorm, Some(radius));
 
     // Every frame: paint, make points, draw them, in one encoder.
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -124,7 +121,12 @@ async fn run(points: u32, file: &str) -> Result<(), Box<dyn Error>> {
         counters[4 * i..4 * i + 4].iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
     };
     let status = Status::from_words(std::array::from_fn(word));
-    println!("{} points on {}, complete: {}", status.points, adapter.get_info().name, status.is_complete());
+    let Status { points, candidates, .. } = status;
+    let name = adapter.get_info().name;
+    println!("{points} points of {candidates} candidates on {name}");
+    if !status.is_complete() {
+        return Err("there was not room for all points".into());
+    }
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(file)?), PIXELS, PIXELS);
     encoder.set_color(png::ColorType::Rgba);
     encoder.write_header()?.write_image_data(pixels)?;

@@ -57,7 +57,10 @@ impl fmt::Display for GpuError {
             Self::Capacity { points } => write!(f, "room for {points} points: 1 to 2^24"),
             Self::Room => f.write_str("room for candidates or opened tiles that no buffer has"),
             Self::Domain { diagonal } => {
-                write!(f, "f32 does not resolve the domain, or its diagonal of {diagonal} is extreme")
+                write!(
+                    f,
+                    "f32 does not resolve the domain, or its diagonal of {diagonal} is extreme"
+                )
             }
             Self::Depth { depth } => write!(f, "tables of depth {depth}: at least 3 is needed"),
             Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),

@@ -41,7 +41,8 @@ pub struct Capacity {
     /// Points, up to 2²⁴: somewhat more than are expected, because the coarseness of the first pass is
     /// chosen by it. Points past it are counted, flagged and not written.
     pub points: u32,
-    /// Candidates that are tested, of which there are 1.1 to 2.1 a point. Past it points are missing, and
+    /// Candidates that are tested, of which there are 1.1 to 2.1 a point over smooth
+    /// and noisy pictures, more at hard edges. Past it points are missing, and
     /// that is flagged.
     pub candidates: u32,
     /// Tiles below those that are opened at peaks of the importance; as candidates.
@@ -49,10 +50,14 @@ pub struct Capacity {
 }
 
 impl Capacity {
-    /// Room for so many points: four times as many candidates, and the subtiles of 330 moderate peaks.
+    /// Room for so many points: eight times as many candidates, a bit each, and the subtiles of 330 moderate peaks.
     #[must_use]
     pub const fn points(points: u32) -> Self {
-        Self { points, candidates: points.saturating_mul(4).saturating_add(1 << 16), subtiles: 1 << 16 }
+        Self {
+            points,
+            candidates: points.saturating_mul(8).saturating_add(1 << 16),
+            subtiles: 1 << 16,
+        }
     }
 }
 
@@ -210,7 +215,7 @@ impl Plan {
             (false, _) => 0.0,
         };
         let reach = Reach { domain, export: &export, longest };
-        let (StartTiles { words: tiles, count: tile_count, keys }, _) =
+        let StartTiles { words: tiles, count: tile_count, keys } =
             start_tiles(placement, &reach, points)?;
         let table = TableWords::new(placement, (width, height), relaxed)?;
         let (mip, mips, pyramid_words) = mips(width, height);
@@ -253,7 +258,12 @@ impl Plan {
             capacity: [points, candidates, subtiles, vertices],
             table: [table.coefficients, table.offsets, table.columns, table.rows],
             moves: [table.thirds, table.edges, table.slots, table.phases],
-            more: [table.vectors, table.slot_count, crate::tiles::TILE_WORDS as u32 * tile_count, relaxed.into()],
+            more: [
+                table.vectors,
+                table.slot_count,
+                crate::tiles::TILE_WORDS as u32 * tile_count,
+                relaxed.into(),
+            ],
             work: [sums, subtile_words, subtile_words + 3 * subtiles, 0],
             mip,
             levels,
@@ -358,12 +368,8 @@ impl Plan {
             Binding::Tiles => self.tiles.len() as u64,
             Binding::Importance => self.uniform.texels.map(u64::from).iter().product(),
             Binding::Pyramid => self.pyramid_words.max(4).into(),
-            Binding::Work => {
-                u64::from(self.uniform.work[2]) + subtiles.div_ceil(LANES.into())
-            }
-            Binding::Counters => {
-                u64::from(TOTALS) + candidates.div_ceil(u64::from(LANES * BLOCK))
-            }
+            Binding::Work => u64::from(self.uniform.work[2]) + subtiles.div_ceil(LANES.into()),
+            Binding::Counters => u64::from(TOTALS) + candidates.div_ceil(u64::from(LANES * BLOCK)),
             Binding::Masks => 4 * candidates.div_ceil(LANES.into()),
             Binding::Positions => 2 * points,
             Binding::Keys => points,
@@ -381,7 +387,11 @@ impl Plan {
         let [width, height] = self.uniform.texels.map(|n| n.div_ceil(64));
         let tiles = self.uniform.tiles.div_ceil(LANES);
         let mut passes = vec![
-            pass("reduce_texels", &[Placed, Frame, Importance, Pyramid][..], Groups::Direct([width, height, 1])),
+            pass(
+                "reduce_texels",
+                &[Placed, Frame, Importance, Pyramid][..],
+                Groups::Direct([width, height, 1]),
+            ),
             pass("reduce_rest", &[Placed, Pyramid], one),
             pass(
                 "classify",
@@ -406,7 +416,10 @@ impl Plan {
                 pass("sum_points", &[Placed, Counters, Draw], one),
                 pass(
                     "write",
-                    &[Placed, Frame, Table, Tiles, Importance, Work, Counters, Masks, Positions, Keys],
+                    &[
+                        Placed, Frame, Table, Tiles, Importance, Work, Counters, Masks, Positions,
+                        Keys,
+                    ],
                     Groups::Indirect,
                 ),
             ]),

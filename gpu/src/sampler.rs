@@ -224,11 +224,7 @@ impl Sampler {
     pub const STATUS_BYTES: u64 = 4 * Status::WORDS as u64;
 }
 
-fn layout(
-    device: &wgpu::Device,
-    bindings: &[Binding],
-    source: Source,
-) -> wgpu::BindGroupLayout {
+fn layout(device: &wgpu::Device, bindings: &[Binding], source: Source) -> wgpu::BindGroupLayout {
     let entries: Vec<_> = bindings
         .iter()
         .map(|binding| {

@@ -45,3 +45,17 @@ pub fn wgsl(source: Source) -> String {
     ]
     .concat()
 }
+
+/// A module with the entry point `self_test`, 64 threads a workgroup, which computes the positions of
+/// [`golden`](crate::golden) vectors: binding 0 their first eight words each, read-only storage; 1 a
+/// uniform of four zeros; 2 the results, two `f32` each, storage.
+#[must_use]
+pub fn self_test_wgsl() -> String {
+    [
+        "override ARITHMETIC: u32 = 1u;\n",
+        include_str!("shaders/wide.wgsl"),
+        include_str!("shaders/arithmetic.wgsl"),
+        include_str!("shaders/self_test.wgsl"),
+    ]
+    .concat()
+}

@@ -127,9 +127,11 @@ impl TableWords {
         self.vectors = self.here();
         let bytes: Vec<u8> =
             slots.iter().flat_map(|slot| slot.vectors.iter().flatten()).map(|v| *v as u8).collect();
-        self.words.extend(bytes.chunks(4).map(|four| {
-            four.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
-        }));
+        self.words.extend(
+            bytes
+                .chunks(4)
+                .map(|four| four.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))),
+        );
     }
 }
 
@@ -158,7 +160,8 @@ mod tests {
 
     #[test]
     fn borders_are_where_the_library_changes_texels() {
-        for (min, size, count) in [(0.0, 1.0, 1000), (-3.7, 0.3, 37), (1e9, 5.0, 64), (0.0, 7.0, 7)] {
+        for (min, size, count) in [(0.0, 1.0, 1000), (-3.7, 0.3, 37), (1e9, 5.0, 64), (0.0, 7.0, 7)]
+        {
             let scale = f64::from(count) / size;
             let borders = borders(min, size, scale, count);
             assert_eq!(borders.len(), count as usize + 1);

@@ -49,7 +49,8 @@ pub(crate) struct Reach<'a> {
 impl Reach<'_> {
     /// How far, in units, relaxation moves points of `level` or later at most.
     pub(crate) fn margin(&self, level: u8) -> f64 {
-        let level = usize::from(level.max(FIRST_RELAXED_LEVEL)).min(self.export.half_edges.len() - 1);
+        let level =
+            usize::from(level.max(FIRST_RELAXED_LEVEL)).min(self.export.half_edges.len() - 1);
         2.0 * self.export.half_edges[level].length() * self.longest * (1.0 + 1e-6)
     }
 
@@ -67,28 +68,30 @@ impl Reach<'_> {
     }
 }
 
-/// How a start level is chosen: the coarsest at which a tile has at most so many points. Coarser ones
-/// bound the importance less sharply; finer ones have more tiles to classify. Blocks hold 2716.
-const POINTS_A_TILE: usize = 400;
+/// How a start level is chosen: the coarsest at which a tile has at most so many points. Finer ones have
+/// more tiles to classify; coarser ones bound the importance less sharply: at 400, thin rings have 13
+/// candidates a point. Blocks hold 2716.
+const POINTS_A_TILE: f64 = 120.0;
 
 /// The finest start level: 160,000 tiles of 48 bytes. Deeper tiles come from opening these.
 const FINEST: u8 = 9;
 
-/// The start tiles for about so many points, and their level.
+/// The start tiles for about so many points.
 pub(crate) fn start_tiles(
     placement: &Placement<'_>,
     reach: &Reach<'_>,
     points: u32,
-) -> Result<(StartTiles, u8), GpuError> {
+) -> Result<StartTiles, GpuError> {
     let rules = placement.tables().rules();
     let walk = Walk { rules: &rules, turned: turned_offsets(&rules)?, reach };
     let frontier = walk.frontier()?;
     let mut level = KEY_LEVEL;
-    // Tiles multiply by 13 or so a level; those of level 5 are at most some dozens.
-    while level < FINEST && walk.count(&frontier, level) * POINTS_A_TILE < points as usize {
+    // In ranks: a level-m tile owns 1/N_m of the root.
+    let ranks = f64::from(points) / reach.domain.area() * reach.export.ranks_per_density;
+    while level < FINEST && ranks > POINTS_A_TILE * count(level.into()) as f64 {
         level += 1;
     }
-    Ok((walk.collect(&frontier, level), level))
+    Ok(walk.collect(&frontier, level))
 }
 
 struct Walk<'a> {
@@ -185,15 +188,6 @@ impl Walk<'_> {
         )
     }
 
-    /// How many tiles a level has.
-    fn count(&self, tiles: &[Tile], level: u8) -> usize {
-        let below = |tile: &Tile| match tile.level < level {
-            true => self.count(&self.children(tile, [0; 2]).collect::<Vec<_>>(), level),
-            false => 1,
-        };
-        tiles.iter().map(below).sum()
-    }
-
     /// All tiles of a level, depth first, so that neighbours in the list are neighbours in the plane.
     fn collect(&self, frontier: &[Tile], level: u8) -> StartTiles {
         let mut references: Vec<Tile> =
@@ -258,7 +252,8 @@ impl List<'_> {
                 let [_, grand, great] = older.ancestors.map(u32::from);
                 let kind = older.kind.index() as u32;
                 let turns = grand << 18 | great << 22 | kind << 26;
-                self.lineages.extend([young_classes(&older.classes), older.classes.over(4) | turns]);
+                self.lineages
+                    .extend([young_classes(&older.classes), older.classes.over(4) | turns]);
             }
         }
     }

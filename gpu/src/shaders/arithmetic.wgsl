@@ -71,7 +71,3 @@ fn place(at: vec4<i32>, edge: vec2<f32>, origin: vec2<f32>) -> vec2<f32> {
     return vec2(add(origin.x, add(mul(edge.x, x), mul(-edge.y, y))),
         add(origin.y, add(mul(edge.y, x), mul(edge.x, y))));
 }
-fn to_caller(at: vec2<f32>) -> vec2<f32> {
-    let sum = vec2(add(placed.corner.x, at.x), add(placed.corner.y, at.y));
-    return min(max(sum, placed.least), placed.greatest);
-}

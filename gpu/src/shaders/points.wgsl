@@ -90,6 +90,12 @@ fn counted_before(l: u32) -> u32 {
     return before;
 }
 
+// In the caller's coordinates, inside the half-open domain.
+fn to_caller(at: vec2<f32>) -> vec2<f32> {
+    let sum = vec2(add(placed.corner.x, at.x), add(placed.corner.y, at.y));
+    return min(max(sum, placed.least), placed.greatest);
+}
+
 fn write_point(to: u32, candidate: Candidate, at: vec2<f32>) {
     if to >= placed.capacity.x { return; }
     positions[to] = to_caller(at);

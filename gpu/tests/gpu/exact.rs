@@ -44,9 +44,10 @@ impl Case {
     }
 
     fn cpu(&self) -> Result<Ranked, SamplingError> {
-        let map = ImageMap::new(self.width, self.height, self.pixels.clone(), InvalidPixels::ZeroAll)
-            .unwrap()
-            .over(self.domain);
+        let map =
+            ImageMap::new(self.width, self.height, self.pixels.clone(), InvalidPixels::ZeroAll)
+                .unwrap()
+                .over(self.domain);
         let sampling = Sampling::new(&self.placement, &map, Amount::Density(self.density))?;
         let mut points = Vec::new();
         sampling.visit(|sample: Sample<Vec2>| {
@@ -141,7 +142,11 @@ fn sets_and_bits_are_the_cpus() {
 #[test]
 fn a_million_points_are_the_cpus() {
     let Some(gpu) = device() else { return };
-    Case::new(Domain::unit(), 7, (512, 512), 1e6, noise).check(gpu, Order::Ordered, Arithmetic::Barriers);
+    Case::new(Domain::unit(), 7, (512, 512), 1e6, noise).check(
+        gpu,
+        Order::Ordered,
+        Arithmetic::Barriers,
+    );
 }
 
 #[test]
@@ -203,7 +208,8 @@ fn limits_are_exact_whatever_the_importance() {
     for seed in 0..6u64 {
         let mut case = Case::new(Domain::unit(), seed, (96, 96), 30_000.0, |_, _| 1.0);
         let rank_shift = twelvefold::export::Export::of(&case.placement).rank_shift;
-        let ranks = case.density * twelvefold::export::Export::of(&case.placement).ranks_per_density;
+        let ranks =
+            case.density * twelvefold::export::Export::of(&case.placement).ranks_per_density;
         let plain = case.cpu().unwrap();
         let mut state = seed + 1;
         let mut next = || {
@@ -249,9 +255,12 @@ fn too_many_points_are_counted_and_flagged_and_the_first_are_kept() {
     }
     // Fewer candidates: a part of the same points, in the same order.
     let room = Capacity { candidates: 10_000, ..case.room() };
-    let sampler = gpu.sampler(case.plan(room, Order::Ordered), Source::Buffer, Arithmetic::Barriers);
+    let sampler =
+        gpu.sampler(case.plan(room, Order::Ordered), Source::Buffer, Arithmetic::Barriers);
     let output = gpu.run(&sampler, Importance::Buffer(&buffer), case.density);
-    assert!(output.status.lacks_candidates() && output.status.candidates == whole.status.candidates);
+    assert!(
+        output.status.lacks_candidates() && output.status.candidates == whole.status.candidates
+    );
     assert!(!output.keys.is_empty() && whole.keys.starts_with(&output.keys));
 }
 

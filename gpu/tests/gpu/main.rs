@@ -3,4 +3,5 @@
 
 mod device;
 mod exact;
+mod golden;
 mod relaxed;

@@ -46,7 +46,11 @@ fn check(gpu: &Device, case: &Case, order: Order) {
             }
         }
     }
-    println!("{} points: {differ} differ by up to {worst:e} ({most:e} allowed), {} missing, {extra} extra", output.keys.len(), cpu.len());
+    println!(
+        "{} points: {differ} differ by up to {worst:e} ({most:e} allowed), {} missing, {extra} extra",
+        output.keys.len(),
+        cpu.len()
+    );
     assert!(worst <= most, "{worst} {most}");
     assert_eq!((cpu.len(), extra), (0, 0));
 }
