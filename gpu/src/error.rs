@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use twelvefold::SamplingError;
-
 /// What is wrong with a plan or with what is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -42,8 +40,6 @@ pub enum GpuError {
     },
     /// The importance handed over is not what was planned: another size or kind, or too short a buffer.
     Importance,
-    /// Buffers of another plan, or positions that were to be relaxed and are not.
-    OtherPlan,
     /// The tiling's exact numbers left their range.
     Tiling,
 }
@@ -68,17 +64,9 @@ impl fmt::Display for GpuError {
             Self::Importance => {
                 f.write_str("the importance is not of the size and kind that were planned")
             }
-            Self::OtherPlan => f.write_str("these buffers belong to another plan"),
             Self::Tiling => f.write_str("the tiling's numbers left their range"),
         }
     }
 }
 
 impl std::error::Error for GpuError {}
-
-impl From<SamplingError> for GpuError {
-    /// Only the precision of a domain is asked of the library.
-    fn from(_: SamplingError) -> Self {
-        Self::Domain { diagonal: f64::NAN }
-    }
-}

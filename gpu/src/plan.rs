@@ -451,3 +451,58 @@ fn mips(width: u32, height: u32) -> ([[u32; 4]; 16], u32, u32) {
     }
     (all, count, first)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use twelvefold::Domain;
+
+    fn plan(size: (u32, u32), capacity: Capacity, order: Order) -> Result<Plan, GpuError> {
+        let placement = Placement::new(Domain::unit(), 3);
+        Plan::new(&placement, size, capacity, order, Points::Relaxed, 4)
+    }
+
+    #[test]
+    fn passes_need_no_more_than_every_device_has() {
+        for order in [Order::Ordered, Order::Append] {
+            let plan = plan((1000, 300), Capacity::points(100_000), order).unwrap();
+            let passes = plan.passes();
+            assert_eq!(passes.len(), if order == Order::Ordered { 9 } else { 8 });
+            for pass in passes {
+                let uniform = |b: &&Binding| matches!(b, Binding::Placed | Binding::Frame);
+                let storage = pass.bindings.len() - pass.bindings.iter().filter(uniform).count();
+                assert!(storage <= 8, "{pass:?}");
+                assert!(pass.bindings.is_sorted_by_key(|binding| *binding as u32));
+                // A dispatch may not write the buffer that its own arguments are in.
+                let writes = pass.bindings.contains(&Binding::Arguments);
+                assert!(!(writes && pass.groups == Groups::Indirect));
+            }
+            assert!(plan.bytes(Binding::Placed) <= 65_536);
+        }
+    }
+
+    #[test]
+    fn what_no_buffer_holds_is_refused() {
+        let small = Capacity::points(100);
+        for size in [(0, 1), (1, 0), (8193, 1), (8192, 8192)] {
+            assert!(matches!(plan(size, small, Order::Ordered), Err(GpuError::Size { .. })));
+        }
+        for points in [0, (1 << 24) + 1, u32::MAX] {
+            let refused = plan((4, 4), Capacity::points(points), Order::Ordered).err();
+            assert_eq!(refused, Some(GpuError::Capacity { points }));
+        }
+        for capacity in [
+            Capacity { candidates: 0, ..small },
+            Capacity { candidates: u32::MAX, ..small },
+            Capacity { subtiles: 0, ..small },
+            Capacity { subtiles: u32::MAX, ..small },
+        ] {
+            assert_eq!(plan((4, 4), capacity, Order::Ordered).err(), Some(GpuError::Room));
+        }
+        let plan = plan((4, 4), small, Order::Ordered).unwrap();
+        for density in [-1.0, f64::NAN, f64::INFINITY, 1e300, 1e-300] {
+            assert!(plan.frame(density).is_err(), "{density}");
+        }
+        assert!(plan.frame(0.0).is_ok() && plan.frame(1.0).is_ok());
+    }
+}
