@@ -15,17 +15,16 @@ use alloc::vec::Vec;
 
 use glam::{DVec2, Vec2};
 
-use crate::clip;
 use crate::domain::Domain;
+use crate::error::SamplingError;
 use crate::placement::{FRONTIER_LEVEL, Placement};
-use crate::sampling::SamplingError;
-use crate::tables::Tables;
+use crate::sampling::ToWorld;
+use crate::tables::{ExactPoint, Tables};
 use crate::tiling::{MAX_LEVEL, TileType};
-use crate::walk::frame::Frame;
-use crate::walk::node::ExactPoint;
+use crate::tree::frame::Frame;
 
 /// Relaxed points of coarser levels than this stay at their centers.
-pub const FIRST_RELAXED_LEVEL: u8 = crate::walk::relaxed::FIRST_RELAXED_LEVEL;
+pub const FIRST_RELAXED_LEVEL: u8 = crate::placement::FIRST_RELAXED_LEVEL;
 
 /// A placement as numbers. Everything is relative to the domain's least corner.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,7 +118,7 @@ pub fn entries(tables: &Tables<'_>, kind: TileType, levels: u8) -> Vec<Entry> {
         .map(|i| {
             let (a, b) = block.rank_coefficients(i);
             let ExactPoint { u, v, p, q } = block.offset(0, i);
-            let (turn, class) = block.third(i);
+            let (turn, class) = block.relax_key(i);
             Entry { a, b, offset: [u, v, p, q], turn, class }
         })
         .collect()
@@ -162,7 +161,7 @@ impl ToCaller {
     /// # Errors
     /// [`SamplingError::Precision`] where `f32` cannot tell the domain's points apart.
     pub fn of(domain: &Domain) -> Result<Self, SamplingError> {
-        let to_caller = clip::ToCaller::<f32>::new(domain)?;
+        let to_caller = ToWorld::<f32>::new(domain)?;
         let [corner, least, greatest] = to_caller.numbers().map(Vec2::from_array);
         Ok(Self { corner, least, greatest })
     }

@@ -50,53 +50,50 @@
 //! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
 //! - `train`: the module `relax`, which trains relaxed offsets;
 //! - `cli` (default): the program and all that it needs;
-//! - `std`: glam and serde use `std`.
+//! - `std`: the module [`refine`]; glam and serde use `std`.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
-#[cfg(test)]
-mod accuracy;
 /// The README's example, compiled and run with the other documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct ReadmeExample;
 
 pub mod bake;
-mod clip;
 mod domain;
-mod effort;
-mod environment;
+mod emit;
+mod error;
 pub mod estimate;
 pub mod export;
 pub mod importance;
-#[cfg(test)]
-mod oracle;
-#[cfg(feature = "parallel")]
-mod parallel;
 mod placement;
-mod points;
-mod relaxed;
+mod position;
+#[doc(hidden)]
+pub mod random;
+#[cfg(feature = "std")]
+pub mod refine;
 mod sampling;
-mod seed;
+mod simd;
 mod tables;
+#[cfg(test)]
+mod tests;
 pub mod tiling;
+mod tree;
 mod walk;
 
-pub use domain::{Domain, DomainError, Region};
-pub use effort::Effort;
-pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
-pub use importance::{
-    BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData,
-    PixelView, Probed, StippleMap,
-};
+pub use domain::{Disc, Domain, DomainError};
 #[cfg(feature = "parallel")]
-pub use parallel::Shards;
+pub use emit::Shards;
+pub use emit::{Division, Effort, Filled, Part, Points, Sample};
+pub use error::SamplingError;
+pub use importance::{
+    BilinearMap, Constant, EnvironmentError, EnvironmentMap, EnvironmentSample, Function, ImageMap,
+    Importance, InvalidPixels, MapError, PixelData, PixelView, Probed, StippleMap,
+};
 pub use placement::Placement;
-pub use points::{Filled, Points, Sample};
-pub use relaxed::RelaxationTable;
-pub use sampling::{Amount, Limits, Sampling, SamplingError};
-pub use tables::{BlockTable, Tables, TablesError};
-pub use walk::scalar::{Coordinate, Position, Scalar};
+pub use position::{Coordinate, Position, Scalar};
+pub use sampling::{Amount, Limits, Sampling};
+pub use tables::{BlockTable, DisplacementTable, Tables, TablesError};

@@ -8,8 +8,8 @@ use twelvefold::estimate::{
     ExactError, Warp, Weighted, Weighting, exactly, normalise, post_stratify,
 };
 use twelvefold::{
-    Amount, BilinearMap, Constant, Domain, EnvironmentMap, Function, ImageMap, Importance,
-    InvalidPixels, Limits, Placement, Region, Sampling, SamplingError,
+    Amount, BilinearMap, Constant, Disc, Domain, EnvironmentMap, Function, ImageMap, Importance,
+    InvalidPixels, Limits, Placement, Sampling, SamplingError,
 };
 
 /// Functions to integrate, of coordinates in [0, 1)² of the domain: one even, one smooth, one with an
@@ -98,7 +98,7 @@ fn bias<I: Importance>(
 /// A ramp from 0 to 2 along a slanted direction, bounded over discs.
 fn ramp() -> impl Importance {
     let value = |p: DVec2| (1.5 * p.x + 0.5 * p.y).max(0.0);
-    Function::new(value, move |r: &Region| value(r.centre + r.radius)).with_integral(1.0)
+    Function::new(value, move |r: &Disc| value(r.centre + r.radius)).with_integral(1.0)
 }
 
 /// Placement by seed makes every estimate unbiased, 8 points included. 48 figures of about N(0, 1): the
@@ -116,14 +116,14 @@ fn check_unbiased<I: Importance>(name: &str, importance: &I, domain: Domain) {
 
 #[test]
 fn constant_importance_is_unbiased() {
-    check_unbiased("constant", &Constant::ONE, Domain::unit());
+    check_unbiased("constant", &Constant::ONE, Domain::UNIT);
     let elongated = Domain::new(DVec2::new(3.0, -1.0), DVec2::new(0.1, 7.0)).unwrap();
     check_unbiased("elongated", &Constant::ONE, elongated);
 }
 
 #[test]
 fn a_ramp_is_unbiased() {
-    check_unbiased("ramp", &ramp(), Domain::unit());
+    check_unbiased("ramp", &ramp(), Domain::UNIT);
 }
 
 #[test]
@@ -155,21 +155,21 @@ fn what_lies_where_the_importance_is_zero_is_not_seen() {
 fn an_aligned_placement_is_unbiased_and_a_complete_level() {
     let mut running: [Running; 4] = Default::default();
     for seed in 0..4000 {
-        let placement = Placement::aligned(Domain::unit(), seed, 23.0).unwrap();
+        let placement = Placement::aligned(Domain::UNIT, seed, 23.0).unwrap();
         let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Density(23.0)).unwrap();
         let points: Vec<Weighted> =
             sampling.weighted(Weighting::Density).unwrap().map(Result::unwrap).collect();
         for (running, f) in running.iter_mut().zip(FUNCTIONS) {
-            running.add(sum_weighted(&points, &Domain::unit(), f));
+            running.add(sum_weighted(&points, &Domain::UNIT, f));
         }
     }
-    for (running, truth) in running.iter().zip(integrals(&Constant::ONE, &Domain::unit())) {
+    for (running, truth) in running.iter().zip(integrals(&Constant::ONE, &Domain::UNIT)) {
         assert!(running.z(truth).abs() < 4.0, "{}", running.z(truth));
     }
     // No two centres of one level are closer than an edge; between levels they are.
     for (density, seed) in [(300.0, 1), (1000.0, 2), (2718.0, 3), (9999.0, 4)] {
         let edge = (1.0 / ((4.0 * 3f64.sqrt() - 6.0) * density)).sqrt();
-        let placement = Placement::aligned(Domain::unit(), seed, density).unwrap();
+        let placement = Placement::aligned(Domain::UNIT, seed, density).unwrap();
         let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Density(density)).unwrap();
         let points: Vec<DVec2> =
             sampling.points::<DVec2>().unwrap().map(|s| s.unwrap().position).collect();
@@ -187,13 +187,13 @@ fn an_aligned_placement_is_unbiased_and_a_complete_level() {
 #[test]
 fn alignment_refuses_what_no_level_has() {
     for density in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let refused = Placement::aligned(Domain::unit(), 1, density).err();
+        let refused = Placement::aligned(Domain::UNIT, 1, density).err();
         assert!(matches!(refused, Some(SamplingError::Amount { .. })), "{refused:?}");
     }
-    let refused = Placement::aligned(Domain::unit(), 1, 1e15).err();
+    let refused = Placement::aligned(Domain::UNIT, 1, 1e15).err();
     assert!(matches!(refused, Some(SamplingError::TooDense { .. })), "{refused:?}");
     for density in [1e-300, 1e-9, 1e-4, 0.5, 1e12] {
-        assert!(Placement::aligned(Domain::unit(), 1, density).is_ok(), "{density}");
+        assert!(Placement::aligned(Domain::UNIT, 1, density).is_ok(), "{density}");
     }
 }
 
@@ -351,7 +351,7 @@ fn exactly_n_needs_no_integral_and_no_limit_on_contrast() {
     let spike = map(side, side, |x, y| if (x, y) == (99, 7) { 1e9 } else { 1e-3 });
     let bump = Function::new(
         |p: DVec2| (1.0 - 40.0 * p.distance(DVec2::new(0.3, 0.4))).max(0.0),
-        |r: &Region| {
+        |r: &Disc| {
             (1.0 - 40.0 * (r.centre.distance(DVec2::new(0.3, 0.4)) - r.radius)).clamp(0.0, 1.0)
         },
     );
@@ -359,7 +359,7 @@ fn exactly_n_needs_no_integral_and_no_limit_on_contrast() {
         let placement = Placement::new(spike.domain(), 4);
         let points = exactly(&placement, &spike, n, Limits::default()).unwrap();
         assert_eq!(points.len(), n);
-        let placement = Placement::new(Domain::unit(), 4);
+        let placement = Placement::new(Domain::UNIT, 4);
         let points = exactly(&placement, &bump, n, Limits::default()).unwrap();
         assert_eq!(points.len(), n);
         let area: f64 = points.iter().map(|point| point.weight).sum();
@@ -370,7 +370,7 @@ fn exactly_n_needs_no_integral_and_no_limit_on_contrast() {
 
 #[test]
 fn exactly_n_says_when_there_are_not_so_many() {
-    let placement = Placement::new(Domain::unit(), 4);
+    let placement = Placement::new(Domain::UNIT, 4);
     let zero = Constant::new(0.0).unwrap();
     let none = exactly(&placement, &zero, 5, Limits::default()).unwrap_err();
     assert_eq!(none, ExactError::TooFew { asked: 5, found: 0 });
@@ -378,7 +378,7 @@ fn exactly_n_says_when_there_are_not_so_many() {
     let spot = DVec2::new(0.3, 0.4);
     let tiny = Function::new(
         move |p: DVec2| f64::from(p.distance(spot) < 1e-6),
-        move |r: &Region| f64::from(r.centre.distance(spot) < 1e-6 + r.radius),
+        move |r: &Disc| f64::from(r.centre.distance(spot) < 1e-6 + r.radius),
     );
     assert_eq!(exactly(&placement, &tiny, 50, Limits::default()).unwrap().len(), 50);
     match exactly(&placement, &tiny, 1000, Limits::default()).unwrap_err() {
@@ -391,7 +391,7 @@ fn exactly_n_says_when_there_are_not_so_many() {
         ExactError::Sampling(SamplingError::TooManyPoints { expected: 100.0, limit: 99 })
     );
     assert_eq!(exactly(&placement, &Constant::ONE, 99, limits).unwrap().len(), 99);
-    let broken = Function::new(|_| f64::NAN, |_: &Region| 1.0);
+    let broken = Function::new(|_| f64::NAN, |_: &Disc| 1.0);
     assert!(matches!(
         exactly(&placement, &broken, 10, Limits::default()),
         Err(ExactError::Sampling(SamplingError::InvalidValue { .. }))

@@ -3,7 +3,7 @@
 use glam::Vec2;
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Placement, Region,
+    Amount, Disc, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Placement,
     Sampling,
 };
 
@@ -17,7 +17,7 @@ fn assert_same(updated: &ImageMap, pixels: &[f32]) {
         for y in 0..height {
             for x in 0..width {
                 let centre = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-                let region = Region { centre, radius };
+                let region = Disc { centre, radius };
                 assert_eq!(updated.upper_bound(&region), fresh.upper_bound(&region));
                 assert_eq!(updated.lower_bound(&region), fresh.lower_bound(&region));
             }
@@ -68,7 +68,7 @@ proptest! {
                 1 => PixelData::U8(&u8s),
                 _ => PixelData::U16(&u16s),
             };
-            let view = PixelView::with_stride(data, w, h, stride).unwrap();
+            let view = PixelView::strided(data, w, h, stride).unwrap();
             if (w, h) == (width, height) {
                 map.update(&view, InvalidPixels::ZeroAll).unwrap();
             } else {
@@ -120,10 +120,10 @@ fn views_that_do_not_fit_their_data_do_not_exist() {
     assert!(PixelView::new(data, 5, 2).is_some());
     assert!(PixelView::new(data, 5, 3).is_none());
     assert!(PixelView::new(data, usize::MAX, usize::MAX).is_none());
-    assert!(PixelView::with_stride(data, 4, 2, 6).is_some());
-    assert!(PixelView::with_stride(data, 5, 2, 6).is_none());
-    assert!(PixelView::with_stride(data, 5, 2, 4).is_none());
-    assert!(PixelView::with_stride(data, 1, usize::MAX, usize::MAX).is_none());
+    assert!(PixelView::strided(data, 4, 2, 6).is_some());
+    assert!(PixelView::strided(data, 5, 2, 6).is_none());
+    assert!(PixelView::strided(data, 5, 2, 4).is_none());
+    assert!(PixelView::strided(data, 1, usize::MAX, usize::MAX).is_none());
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn a_bound_misses_no_pixel_and_sees_none_far_away() {
                 let place = |step: usize, size: usize| (i * step % 64) as f64 / 64.0 * size as f64;
                 let centre = glam::DVec2::new(place(1, width), place(27, height));
                 for radius in [0.01, 0.6, 1.0, 2.3, 9.0, 70.0] {
-                    let region = Region { centre, radius };
+                    let region = Disc { centre, radius };
                     let bound = map.upper_bound(&region);
                     assert_eq!(negative.lower_bound(&region), 1.0 - bound);
                     let away = centre.distance(centre.clamp(low, low + 1.0));

@@ -2,20 +2,18 @@
 
 mod common;
 
-use std::ops::ControlFlow;
-
 use common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use twelvefold::{
-    Amount, Constant, Domain, DomainError, Function, ImageMap, Importance, InvalidPixels, Limits,
-    MapError, Placement, Region, Sampling, SamplingError,
+    Amount, Constant, Disc, Domain, DomainError, Function, ImageMap, Importance, InvalidPixels,
+    Limits, MapError, Placement, Sampling, SamplingError,
 };
 
 /// Importance 1 in a disc and 0 elsewhere, with its exact bound.
-fn disc(centre: DVec2, radius: f64) -> Function<impl Fn(DVec2) -> f64, impl Fn(&Region) -> f64> {
+fn disc(centre: DVec2, radius: f64) -> Function<impl Fn(DVec2) -> f64, impl Fn(&Disc) -> f64> {
     Function::new(
         move |p: DVec2| f64::from(p.distance(centre) < radius),
-        move |r: &Region| f64::from(r.centre.distance(centre) < radius + r.radius),
+        move |r: &Disc| f64::from(r.centre.distance(centre) < radius + r.radius),
     )
 }
 
@@ -27,8 +25,7 @@ fn few_tiles() -> Limits {
 /// The greatest density that a placement admits.
 fn greatest_density(placement: &Placement<'_>) -> f64 {
     let admitted = |density: f64| {
-        Sampling::with_limits(placement, &Constant::ONE, Amount::Density(density), few_tiles())
-            .is_ok()
+        Sampling::within(placement, &Constant::ONE, Amount::Density(density), few_tiles()).is_ok()
     };
     let (mut low, mut high) = (1.0f64, 1e300);
     assert!(admitted(low) && !admitted(high));
@@ -43,12 +40,12 @@ fn greatest_density(placement: &Placement<'_>) -> f64 {
 #[test]
 fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
     for seed in 0..4 {
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let density = greatest_density(&placement);
         assert!((1e13..1e14).contains(&density), "{density}");
         let too_dense = Amount::Density(density.next_up());
         assert!(matches!(
-            Sampling::with_limits(&placement, &Constant::ONE, too_dense, few_tiles()),
+            Sampling::within(&placement, &Constant::ONE, too_dense, few_tiles()),
             Err(SamplingError::TooDense { .. })
         ));
 
@@ -56,8 +53,7 @@ fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
         let (centre, expected) =
             (DVec2::new(0.3, 0.8), core::f64::consts::PI * radius * radius * density);
         let spot = disc(centre, radius);
-        let sampling =
-            Sampling::with_limits(&placement, &spot, Amount::Density(density), few_tiles());
+        let sampling = Sampling::within(&placement, &spot, Amount::Density(density), few_tiles());
         let found = points(&sampling.unwrap()).unwrap();
         assert!((found.len() as f64 / expected - 1.0).abs() < 0.2, "{} {expected}", found.len());
         // Ranks of the last level, all different, as are the positions, one edge apart or more.
@@ -78,10 +74,10 @@ fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
 #[test]
 fn a_magnification_of_a_million_millions_finds_its_few_points_in_few_tiles() {
     for seed in 0..20 {
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let spot = disc(DVec2::new(0.7, 0.2), 5e-6);
         let sampling =
-            Sampling::with_limits(&placement, &spot, Amount::Density(1e12), few_tiles()).unwrap();
+            Sampling::within(&placement, &spot, Amount::Density(1e12), few_tiles()).unwrap();
         let count = points(&sampling).unwrap().len();
         assert!((55..105).contains(&count), "{count} points where 78.5 are expected");
     }
@@ -89,28 +85,28 @@ fn a_magnification_of_a_million_millions_finds_its_few_points_in_few_tiles() {
 
 #[test]
 fn work_is_announced_and_stopped_at_its_limits() {
-    let placement = Placement::new(Domain::unit(), 1);
+    let placement = Placement::new(Domain::UNIT, 1);
     let points_limit = Limits { points: 1000, ..Limits::default() };
     let amount = Amount::Points(1001.0);
     assert_eq!(
-        Sampling::with_limits(&placement, &Constant::ONE, amount, points_limit).unwrap_err(),
+        Sampling::within(&placement, &Constant::ONE, amount, points_limit).unwrap_err(),
         SamplingError::TooManyPoints { expected: 1001.0, limit: 1000 }
     );
     // Without an integral, the bound counts.
-    let half = Function::new(|p: DVec2| f64::from(p.x < 0.5), |_: &Region| 1.0);
+    let half = Function::new(|p: DVec2| f64::from(p.x < 0.5), |_: &Disc| 1.0);
     let amount = Amount::Density(1001.0);
     assert!(matches!(
-        Sampling::with_limits(&placement, &half, amount, points_limit),
+        Sampling::within(&placement, &half, amount, points_limit),
         Err(SamplingError::TooManyPoints { .. })
     ));
     let tiles_limit = Limits { tiles: 50, ..Limits::default() };
-    let sampling = Sampling::with_limits(&placement, &half, Amount::Density(1e6), tiles_limit);
+    let sampling = Sampling::within(&placement, &half, Amount::Density(1e6), tiles_limit);
     assert_eq!(points(&sampling.unwrap()).unwrap_err(), SamplingError::TilesLimit { limit: 50 });
 }
 
 #[test]
 fn tiny_and_huge_domains_hold_the_same_points_scaled() {
-    let unit = Placement::new(Domain::unit(), 77);
+    let unit = Placement::new(Domain::UNIT, 77);
     let unit = Sampling::new(&unit, &Constant::ONE, Amount::Points(5000.0)).unwrap();
     let expected = points(&unit).unwrap();
     // Powers of two scale without rounding: then the points are the same to the bit.
@@ -171,13 +167,10 @@ fn single_precision_stays_inside_a_domain_that_it_can_hardly_resolve() {
     let placement = Placement::new(domain, 5);
     let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(2000.0)).unwrap();
     let mut count = 0;
-    sampling
-        .visit::<Vec2>(|sample| {
-            assert!(domain.contains(sample.position.as_dvec2()));
-            count += 1;
-            ControlFlow::Continue(())
-        })
-        .unwrap();
+    for sample in sampling.points::<Vec2>().unwrap() {
+        assert!(domain.contains(sample.unwrap().position.as_dvec2()));
+        count += 1;
+    }
     assert!((1800..2200).contains(&count));
     let empty = Domain::new(DVec2::splat(1e9 + 1.0), DVec2::ONE).unwrap();
     let placement = Placement::new(empty, 5);
@@ -219,7 +212,7 @@ fn extreme_shapes_give_their_count() {
 
 #[test]
 fn amounts_that_are_no_amount_are_errors() {
-    let placement = Placement::new(Domain::unit(), 1);
+    let placement = Placement::new(Domain::UNIT, 1);
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -5e-324] {
         for amount in [Amount::Points(value), Amount::Density(value)] {
             let error = Sampling::new(&placement, &Constant::ONE, amount).unwrap_err();
@@ -315,7 +308,7 @@ fn subnormal_and_huge_pixels_give_their_count() {
         assert!(found.iter().all(|(_, p)| (p.x as usize + p.y as usize).is_multiple_of(3)));
     }
     // A constant so small that no density makes up for it.
-    let placement = Placement::new(Domain::unit(), 4);
+    let placement = Placement::new(Domain::UNIT, 4);
     let tiny = Constant::new(5e-324).unwrap();
     let error = Sampling::new(&placement, &tiny, Amount::Points(100.0)).unwrap_err();
     assert!(matches!(error, SamplingError::NoImportance), "{error}");
@@ -323,7 +316,7 @@ fn subnormal_and_huge_pixels_give_their_count() {
 
 #[test]
 fn importance_times_magnification_may_overflow_without_harm() {
-    let placement = Placement::new(Domain::unit(), 4);
+    let placement = Placement::new(Domain::UNIT, 4);
     let huge = Constant::new(f64::MAX).unwrap();
     let error = Sampling::new(&placement, &huge, Amount::Density(1e10)).unwrap_err();
     assert!(matches!(error, SamplingError::TooDense { .. }), "{error}");
@@ -333,11 +326,11 @@ fn importance_times_magnification_may_overflow_without_harm() {
 
 #[test]
 fn closures_that_break_their_promise_are_errors() {
-    let placement = Placement::new(Domain::unit(), 4);
+    let placement = Placement::new(Domain::UNIT, 4);
     let bad_values = [f64::NAN, -1.0, f64::INFINITY, 1.5];
     for bad in bad_values {
         let broken =
-            Function::new(move |p: DVec2| if p.x > 0.9 { bad } else { 1.0 }, |_: &Region| 1.0);
+            Function::new(move |p: DVec2| if p.x > 0.9 { bad } else { 1.0 }, |_: &Disc| 1.0);
         let sampling = Sampling::new(&placement, &broken, Amount::Density(1e4)).unwrap();
         match points(&sampling).unwrap_err() {
             SamplingError::InvalidValue { at, value, bound } => {
@@ -347,18 +340,17 @@ fn closures_that_break_their_promise_are_errors() {
         }
     }
     for bad in [f64::NAN, -1.0, f64::INFINITY, f64::NEG_INFINITY] {
-        let broken = Function::new(|_| 1.0, move |_: &Region| bad);
+        let broken = Function::new(|_| 1.0, move |_: &Disc| bad);
         let refused = Sampling::new(&placement, &broken, Amount::Density(1e4)).err();
         assert!(matches!(refused, Some(SamplingError::InvalidBound { .. })), "{refused:?}");
         // Only far down: met by the walk.
-        let broken =
-            Function::new(|_| 1.0, move |r: &Region| if r.radius < 0.1 { bad } else { 1.0 });
+        let broken = Function::new(|_| 1.0, move |r: &Disc| if r.radius < 0.1 { bad } else { 1.0 });
         let sampling = Sampling::new(&placement, &broken, Amount::Density(1e6)).unwrap();
         let error = points(&sampling).unwrap_err();
         assert!(matches!(error, SamplingError::InvalidBound { .. }), "{error}");
     }
     // −0 is zero.
-    let nothing = Function::new(|_| -0.0, |_: &Region| -0.0);
+    let nothing = Function::new(|_| -0.0, |_: &Disc| -0.0);
     let sampling = Sampling::new(&placement, &nothing, Amount::Density(1e6)).unwrap();
     assert_eq!(points(&sampling).unwrap(), []);
 }
@@ -371,18 +363,18 @@ impl Importance for Floor {
         1.0
     }
 
-    fn upper_bound(&self, _: &Region) -> f64 {
+    fn upper_bound(&self, _: &Disc) -> f64 {
         1.0
     }
 
-    fn lower_bound(&self, _: &Region) -> f64 {
+    fn lower_bound(&self, _: &Disc) -> f64 {
         self.0
     }
 }
 
 #[test]
 fn no_lower_bound_makes_more_points_than_the_upper_one_admits() {
-    let placement = Placement::new(Domain::unit(), 4);
+    let placement = Placement::new(Domain::UNIT, 4);
     let points_of = |importance: &dyn Importance, relaxed: bool| {
         let sampling = Sampling::new(&placement, &importance, Amount::Density(20_000.0)).unwrap();
         let sampling = if relaxed { sampling.relaxed().unwrap() } else { sampling };
@@ -410,16 +402,13 @@ fn one_hot_texel_in_sixty_seven_million_gets_all_points_in_few_tiles() {
     for seed in 0..3 {
         let placement = Placement::new(image.domain(), seed);
         let sampling =
-            Sampling::with_limits(&placement, &image, Amount::Points(100.0), few_tiles()).unwrap();
+            Sampling::within(&placement, &image, Amount::Points(100.0), few_tiles()).unwrap();
         let found = points(&sampling).unwrap();
         assert!((70..130).contains(&found.len()), "{}", found.len());
         assert!(found.iter().all(|(_, p)| p.floor() == DVec2::new(7177.0, 5003.0)));
-        sampling
-            .visit::<Vec2>(|s| {
-                assert_eq!(s.position.floor(), Vec2::new(7177.0, 5003.0));
-                ControlFlow::Continue(())
-            })
-            .unwrap();
+        for sample in sampling.points::<Vec2>().unwrap() {
+            assert_eq!(sample.unwrap().position.floor(), Vec2::new(7177.0, 5003.0));
+        }
     }
 }
 

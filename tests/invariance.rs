@@ -1,13 +1,11 @@
 //! What may change when a point is emitted, never whether or where: order of the walk, baked depth,
 //! clip, shards, threads, precision, buffers.
 
-use std::ops::ControlFlow;
-
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Placement, Position, Probed,
-    Region, Sample, Sampling, SamplingError, Scalar, Tables, bake,
+    Amount, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Placement, Position,
+    Probed, Sample, Sampling, SamplingError, Scalar, Tables, bake,
 };
 
 /// Rank and the bits of the coordinates.
@@ -47,7 +45,7 @@ fn map(width: usize, height: usize, contrast: f32, seed: u64) -> ImageMap {
 
 fn domains() -> impl Strategy<Value = Domain> {
     prop_oneof![
-        Just(Domain::unit()),
+        Just(Domain::UNIT),
         Just(Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap()),
         Just(Domain::new(DVec2::new(1e6, -1e6), DVec2::new(4.0, 9.0)).unwrap()),
     ]
@@ -108,15 +106,32 @@ proptest! {
         let whole = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
         let clipped = whole.clipped(rectangle_in(&map.domain(), corners));
         for whole in [whole, clipped, whole.relaxed().unwrap(), clipped.relaxed().unwrap()] {
+            let division = whole.divide(of).unwrap();
             let parts: Vec<Bits> = (0..of)
-                .flat_map(|i| points::<Vec2, _>(&whole.shard(i, of).unwrap()))
+                .flat_map(|i| division.part(i).unwrap().points::<Vec2>().unwrap())
+                .map(|sample| bits(&sample.unwrap()))
                 .collect();
-            prop_assert_eq!(parts, points::<Vec2, _>(&whole));
+            let whole = points::<Vec2, _>(&whole);
+            prop_assert_eq!(&parts, &whole);
+            // Each way to receive a part.
+            let mut buffer = vec![Vec2::NAN; whole.len() + 1];
+            let (mut x, mut y) = (vec![f32::NAN; whole.len() + 1], vec![f32::NAN; whole.len() + 1]);
+            let (mut filled, mut columns) = (0, 0);
+            for i in 0..of {
+                let part = division.part(i).unwrap();
+                filled += part.fill(&mut buffer[filled..]).unwrap().written;
+                columns += part.fill_columns(&mut x[columns..], &mut y[columns..]).unwrap().written;
+            }
+            prop_assert_eq!((filled, columns), (whole.len(), whole.len()));
+            for (i, (_, at_x, at_y)) in whole.iter().enumerate() {
+                prop_assert_eq!(f64::from(buffer[i].x).to_bits(), *at_x);
+                prop_assert_eq!(f64::from(y[i]).to_bits(), *at_y);
+            }
         }
     }
 
     #[test]
-    fn buffers_and_visitors_receive_what_the_iterator_yields(
+    fn buffers_receive_what_the_iterator_yields(
         seed: u64,
         domain in domains(),
         size in (1usize..30, 1usize..30),
@@ -143,15 +158,6 @@ proptest! {
         let columns: Vec<Vec2> =
             x.iter().zip(&y).take(filled.written).map(|(x, y)| Vec2::new(*x, *y)).collect();
         prop_assert_eq!(&columns[..], &all[..filled.written]);
-
-        let mut visited = Vec::new();
-        sampling
-            .visit(|sample: Sample<Vec2>| {
-                visited.push(sample.position);
-                if visited.len() == room + 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })
-            .unwrap();
-        prop_assert_eq!(&visited[..], &all[..all.len().min(room + 1)]);
     }
 
     #[test]
@@ -161,7 +167,7 @@ proptest! {
         for depth in 1..=bake::MAX_DEPTH {
             let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
             let tables = Tables::from_bytes(&bytes).unwrap();
-            let placement = Placement::with_tables(map.domain(), seed, tables);
+            let placement = Placement::new_in(map.domain(), seed, tables);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
             let uniform = Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
             let points = (sorted::<Vec2, _>(&sampling), sorted::<Vec2, _>(&uniform));
@@ -209,10 +215,58 @@ fn threads_change_nothing() {
 
 #[test]
 fn a_part_that_does_not_exist_is_an_error() {
-    let placement = Placement::new(Domain::unit(), 1);
+    let placement = Placement::new(Domain::UNIT, 1);
     let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(100.0)).unwrap();
     for (index, of) in [(0, 0), (3, 3), (usize::MAX, 2)] {
-        assert_eq!(sampling.shard(index, of).unwrap_err(), SamplingError::Shard { index, of });
+        let refused = sampling.divide(of).and_then(|division| division.part(index)).err();
+        let named = if of == 0 { 0 } else { index };
+        assert_eq!(refused, Some(SamplingError::Part { index: named, of }));
+    }
+}
+
+/// Every order of every set of the steps that make a sampling from another.
+#[test]
+fn the_order_of_steps_changes_no_point() {
+    type Step = fn(Sampling<'_, ImageMap>, Domain) -> Sampling<'_, ImageMap>;
+    let steps: [Step; 3] = [
+        |sampling, _| sampling.relaxed().unwrap(),
+        |sampling, rectangle| sampling.clipped(rectangle),
+        // Once more: the last rectangle counts, and nothing else is forgotten.
+        |sampling, rectangle| sampling.clipped(Domain::UNIT).clipped(rectangle),
+    ];
+    for seed in 0..5 {
+        let map = map(23, 17, 30.0, seed);
+        let rectangle = rectangle_in(&map.domain(), [0.1, 0.2, 0.7, 0.9]);
+        let placement = Placement::new(map.domain(), seed);
+        let start = Sampling::new(&placement, &map, Amount::Points(700.0)).unwrap();
+        for set in 0..8 {
+            let taken: Vec<usize> = (0..3).filter(|step| set >> step & 1 == 1).collect();
+            let orders: Vec<Vec<usize>> = match taken[..] {
+                [a, b] => vec![vec![a, b], vec![b, a]],
+                [a, b, c] => vec![
+                    vec![a, b, c],
+                    vec![a, c, b],
+                    vec![b, a, c],
+                    vec![b, c, a],
+                    vec![c, a, b],
+                    vec![c, b, a],
+                ],
+                _ => vec![taken],
+            };
+            let mut first = None;
+            for order in orders {
+                let sampling =
+                    order.iter().fold(start, |sampling, step| steps[*step](sampling, rectangle));
+                let whole = points::<DVec2, _>(&sampling);
+                let division = sampling.divide(3).unwrap();
+                let parts: Vec<Bits> = (0..3)
+                    .flat_map(|i| division.part(i).unwrap().points::<DVec2>().unwrap())
+                    .map(|sample| bits(&sample.unwrap()))
+                    .collect();
+                assert_eq!(parts, whole, "{order:?}");
+                assert_eq!(first.get_or_insert_with(|| whole.clone()), &whole, "{order:?}");
+            }
+        }
     }
 }
 
@@ -241,7 +295,7 @@ impl Importance for WithoutLowerBound<'_> {
         self.0.value(at)
     }
 
-    fn upper_bound(&self, region: &Region) -> f64 {
+    fn upper_bound(&self, region: &Disc) -> f64 {
         self.0.upper_bound(region)
     }
 

@@ -3,14 +3,13 @@
 mod common;
 
 use std::collections::BTreeSet;
-use std::ops::ControlFlow;
 
 use common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Domain, Function, ImageMap, InvalidPixels, Placement, Region, Sampling,
-    Tables, bake,
+    Amount, Constant, Disc, Domain, Function, ImageMap, InvalidPixels, Placement, Sampling, Tables,
+    bake,
 };
 
 /// Sizes, pixels of several characters, and a seed.
@@ -107,10 +106,9 @@ proptest! {
         for (_, at) in &found {
             prop_assert_eq!(at.floor(), DVec2::new(x as f64, y as f64));
         }
-        sampling.visit::<Vec2>(|sample| {
-            assert_eq!(sample.position.floor(), Vec2::new(x as f32, y as f32));
-            ControlFlow::Continue(())
-        }).unwrap();
+        for sample in sampling.points::<Vec2>().unwrap() {
+            prop_assert_eq!(sample.unwrap().position.floor(), Vec2::new(x as f32, y as f32));
+        }
     }
 
     #[test]
@@ -136,14 +134,14 @@ proptest! {
     fn looser_bounds_give_the_same_points(seed: u64, looseness in 1.0..50.0f64) {
         // Pruning that lost a point would show: a bound without any information prunes nothing.
         let value = |p: DVec2| p.x * p.x * p.y;
-        let bound = |r: &Region| {
+        let bound = |r: &Disc| {
             let [x, y] = (r.centre + r.radius).clamp(DVec2::ZERO, DVec2::ONE).to_array();
             x * x * y
         };
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let tight = Function::new(value, bound);
-        let loose = Function::new(value, move |r: &Region| (looseness * bound(r)).max(0.1));
-        let blind = Function::new(value, |_: &Region| 1.0);
+        let loose = Function::new(value, move |r: &Disc| (looseness * bound(r)).max(0.1));
+        let blind = Function::new(value, |_: &Disc| 1.0);
         let amount = Amount::Density(6000.0);
         let tight = points(&Sampling::new(&placement, &tight, amount).unwrap()).unwrap();
         let loose = points(&Sampling::new(&placement, &loose, amount).unwrap()).unwrap();
@@ -158,12 +156,6 @@ proptest! {
         let placement = Placement::new(image.domain(), seed);
         let sampling = Sampling::new(&placement, &image, Amount::Points(amount)).unwrap();
         let iterated: Vec<_> = sampling.points::<DVec2>().unwrap().map(Result::unwrap).collect();
-        let mut visited = Vec::new();
-        sampling.visit(|sample| {
-            visited.push(sample);
-            ControlFlow::Continue(())
-        }).unwrap();
-        prop_assert_eq!(&iterated, &visited);
         let mut buffer = vec![DVec2::ZERO; iterated.len() + 1];
         let filled = sampling.fill(&mut buffer).unwrap();
         prop_assert!(filled.complete && filled.written == iterated.len());
@@ -171,7 +163,7 @@ proptest! {
         for depth in 1..=bake::MAX_DEPTH {
             let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
             let placement =
-                Placement::with_tables(image.domain(), seed, Tables::from_bytes(&bytes).unwrap());
+                Placement::new_in(image.domain(), seed, Tables::from_bytes(&bytes).unwrap());
             let sampling = Sampling::new(&placement, &image, Amount::Points(amount)).unwrap();
             let mut sorted = iterated.clone();
             sorted.sort_by_key(|sample| sample.rank);
@@ -199,7 +191,7 @@ fn threads_get_the_same_points() {
 fn seeds_give_different_points() {
     let mut seen = BTreeSet::new();
     for seed in (0..200).chain([u64::MAX, 1 << 63, 1 << 32]) {
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(20.0)).unwrap();
         for (_, at) in points(&sampling).unwrap() {
             assert!(seen.insert(at.to_array().map(f64::to_bits)), "seed {seed} repeats {at}");
@@ -216,7 +208,7 @@ fn relaxed_points_of_constant_importance_are_unbiased() {
     let integrals = [1.0, 0.25 * 0.25 / 2.0, 1.0 / 36.0];
     let (mut sums, mut squares) = ([0.0; 3], [0.0; 3]);
     for seed in 0..seeds {
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(n)).unwrap();
         let relaxed = sampling.relaxed().unwrap();
         let points: Vec<DVec2> = relaxed.points().unwrap().map(|p| p.unwrap().position).collect();

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold::bake::{self, BakeError};
 use twelvefold::tiling::{Digits, DigitsError, Rules, TileType};
 use twelvefold::{Tables, TablesError};
@@ -11,8 +11,8 @@ fn rules() -> Rules {
     Tables::built_in().rules()
 }
 
-fn relaxation() -> Relaxation {
-    Relaxation::from_bytes(include_bytes!("../tables/relaxed.bin")).unwrap()
+fn displacements() -> Displacements {
+    Displacements::from_bytes(include_bytes!("../tables/relaxed.bin")).unwrap()
 }
 
 #[test]
@@ -20,16 +20,16 @@ fn the_built_in_tables_are_the_baked_rules() {
     let built_in = Tables::built_in();
     let digits = Digits::parse(include_str!("../tables/digits.txt")).unwrap();
     assert_eq!(built_in.rules(), Rules::new(&digits).unwrap());
-    let relaxation = relaxation();
-    let baked = bake::bake(&rules(), built_in.depth(), Some(&relaxation)).unwrap();
+    let displacements = displacements();
+    let baked = bake::bake(&rules(), built_in.depth(), Some(&displacements)).unwrap();
     assert_eq!(built_in.as_bytes(), baked);
-    assert_eq!(built_in.relaxation().unwrap().provenance(), relaxation.provenance);
+    assert_eq!(built_in.displacements().unwrap().provenance(), displacements.provenance);
     assert!(Tables::from_bytes(built_in.as_bytes()).is_ok());
 }
 
 #[test]
 fn the_default_depth_has_the_recorded_hash() {
-    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, Some(&relaxation())).unwrap();
+    let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, Some(&displacements())).unwrap();
     let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
     let recorded = include_str!("../tables/baked.sha256");
     assert_eq!(recorded.split_whitespace().next(), Some(hash.as_str()));
@@ -103,8 +103,8 @@ fn every_truncation_and_any_trailing_byte_is_an_error() {
 
 #[test]
 fn damaged_relaxed_offsets_are_an_error_even_under_a_matching_checksum() {
-    let bytes = bake::bake(&rules(), 1, Some(&relaxation())).unwrap();
-    assert!(Tables::from_bytes(&bytes).unwrap().relaxation().is_some());
+    let bytes = bake::bake(&rules(), 1, Some(&displacements())).unwrap();
+    assert!(Tables::from_bytes(&bytes).unwrap().displacements().is_some());
     let length = bytes.len() - 4;
     // The records of the slots and the lengths around them lie in the last part; vectors may hold
     // anything, but the bound on their length is checked against them.
@@ -121,7 +121,7 @@ fn damaged_relaxed_offsets_are_an_error_even_under_a_matching_checksum() {
     let mut swapped = other;
     swapped[0].swap(1, 2);
     let swapped = Rules::new(&Digits::from_derivation_order(swapped)).unwrap();
-    assert_eq!(bake::bake(&swapped, 1, Some(&relaxation())), Err(BakeError::OtherDigits));
+    assert_eq!(bake::bake(&swapped, 1, Some(&displacements())), Err(BakeError::OtherDigits));
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! Same inputs, same points, bit for bit, in every version until the changelog says otherwise.
 //!
 //! Each line of the golden file is a case, its number of points, and the first 16 hex digits of the
-//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank. The inputs come from integer
-//! arithmetic alone.
+//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank. The inputs come from
+//! integer arithmetic alone.
 
 use std::fmt::Write as _;
 
 use glam::{DVec2, Vec2};
 use sha2::{Digest, Sha256};
 use twelvefold::{
-    Amount, Constant, Domain, Function, ImageMap, Importance, InvalidPixels, Placement, Region,
+    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Placement,
     Sampling, StippleMap,
 };
 
@@ -89,7 +89,7 @@ fn points_are_those_of_the_golden_file() {
         ("texture", texture()),
         ("edges", edges()),
         ("hot-spot", hot_spot()),
-        ("ramp-unit", ramp().over(Domain::unit())),
+        ("ramp-unit", ramp().over(Domain::UNIT)),
         ("texture-off-centre", texture().over(off_centre)),
         (
             "texture-power-of-two",
@@ -98,7 +98,7 @@ fn points_are_those_of_the_golden_file() {
     ];
     for seed in [1, 2] {
         for count in [3.0, 50.0, 1_000.0, 40_000.0] {
-            for (name, domain) in [("unit", Domain::unit()), ("off-centre", off_centre)] {
+            for (name, domain) in [("unit", Domain::UNIT), ("off-centre", off_centre)] {
                 let placement = Placement::new(domain, seed);
                 let sampling =
                     Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
@@ -112,7 +112,7 @@ fn points_are_those_of_the_golden_file() {
         }
         // The committed offsets, on constant ground of several phases and on maps.
         for count in [40.0, 3_000.0, 12_000.0, 40_000.0, 90_000.0] {
-            for (name, domain) in [("unit", Domain::unit()), ("off-centre", off_centre)] {
+            for (name, domain) in [("unit", Domain::UNIT), ("off-centre", off_centre)] {
                 let placement = Placement::new(domain, seed);
                 let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(count));
                 let sampling = sampling.unwrap().relaxed().unwrap();
@@ -140,20 +140,25 @@ fn points_are_those_of_the_golden_file() {
 
         let bump = Function::new(
             |p: DVec2| p.x * (1.0 - p.y),
-            |r: &Region| {
+            |r: &Disc| {
                 (r.centre.x + r.radius).clamp(0.0, 1.0)
                     * (1.0 - r.centre.y + r.radius).clamp(0.0, 1.0)
             },
         );
-        let placement = Placement::new(Domain::unit(), seed);
+        let placement = Placement::new(Domain::UNIT, seed);
         let sampling = Sampling::new(&placement, &bump, Amount::Density(20_000.0)).unwrap();
         describe(&mut lines, &format!("closure-{seed}"), &sampling);
+    }
+    if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
+        let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/points.txt");
+        return std::fs::write(golden, lines).unwrap();
     }
     let different: Vec<_> =
         lines.lines().zip(GOLDEN.lines()).filter(|(now, golden)| now != golden).collect();
     assert!(
         different.is_empty() && lines.lines().count() == GOLDEN.lines().count(),
-        "{} lines differ, first {:?}; this build makes\n{lines}",
+        "{} lines differ, first {:?}; if that is meant, it is a breaking change: say so in \
+         CHANGELOG.md and write the file anew with TWELVEFOLD_BLESS=1",
         different.len(),
         different.first()
     );

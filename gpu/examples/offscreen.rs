@@ -56,7 +56,7 @@ async fn run(points: u32, file: &str) -> Result<(), Box<dyn Error>> {
     let (device, queue) = adapter.request_device(&wgpu::DeviceDescriptor::default()).await?;
 
     // Once: room for what the mean importance, 0.27, is expected to give.
-    let placement = Placement::new(Domain::unit(), 1);
+    let placement = Placement::new(Domain::UNIT, 1);
     let capacity = Capacity::points(points + points / 8 + 1000);
     let plan =
         Plan::new(&placement, (TEXELS, TEXELS), capacity, Order::Ordered, Points::Relaxed, 4)?;

@@ -1,7 +1,7 @@
 //! A plan: everything that one placement, one size of importance and one capacity need, as plain data.
 
 use twelvefold::Placement;
-use twelvefold::bake::relaxation::DELTA;
+use twelvefold::bake::displacement::DELTA;
 use twelvefold::export::{Export, ToCaller};
 
 use crate::error::GpuError;
@@ -458,7 +458,7 @@ mod tests {
     use twelvefold::Domain;
 
     fn plan(size: (u32, u32), capacity: Capacity, order: Order) -> Result<Plan, GpuError> {
-        let placement = Placement::new(Domain::unit(), 3);
+        let placement = Placement::new(Domain::UNIT, 3);
         Plan::new(&placement, size, capacity, order, Points::Relaxed, 4)
     }
 

@@ -1,6 +1,6 @@
 //! The words of the table buffer: what placements share, and the texels' borders.
 
-use twelvefold::bake::relaxation::Layer;
+use twelvefold::bake::displacement::Layer;
 use twelvefold::export;
 use twelvefold::tiling::{TileCounts, TileType};
 use twelvefold::{Placement, Tables};

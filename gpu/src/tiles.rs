@@ -58,7 +58,7 @@ impl Reach<'_> {
     fn holds(&self, tile: &Tile) -> bool {
         let level = usize::from(tile.level);
         let [u, v, p, q] = tile.center.map(f64::from);
-        let root = twelvefold::tiling::cyclotomic::SQRT_3;
+        let root = twelvefold::tiling::numbers::SQRT_3;
         let at = glam::DVec2::new(u + root * v, p + root * q);
         let at = self.export.origin + self.export.half_edges[level].rotate(at);
         let distance = at.clamp(glam::DVec2::ZERO, self.domain.size()).distance(at);

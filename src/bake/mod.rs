@@ -5,16 +5,16 @@
 
 pub mod block;
 pub mod class;
-pub mod relaxation;
-mod relaxation_error;
-pub mod wire;
+pub mod displacement;
+mod displacement_error;
+pub mod format;
 
 use alloc::vec::Vec;
 use core::fmt;
 
 use crate::tiling::{Rules, TileType};
 use block::Block;
-use relaxation::Relaxation;
+use displacement::Displacements;
 
 /// The deepest blocks that can be baked: 35,113 and 37,829 entries a type. One level more and rank
 /// coefficients leave 16 bits.
@@ -67,13 +67,13 @@ impl core::error::Error for BakeError {}
 pub fn bake(
     rules: &Rules,
     depth: u8,
-    relaxation: Option<&Relaxation>,
+    displacements: Option<&Displacements>,
 ) -> Result<Vec<u8>, BakeError> {
-    if relaxation.is_some_and(|relaxation| !relaxation.fits(rules.digits())) {
+    if displacements.is_some_and(|displacements| !displacements.fits(rules.digits())) {
         return Err(BakeError::OtherDigits);
     }
     let blocks = blocks(rules, depth)?;
-    wire::encode(rules, depth, &blocks, relaxation)
+    format::encode(rules, depth, &blocks, displacements)
 }
 
 /// The blocks of all four types.

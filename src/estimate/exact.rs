@@ -7,10 +7,11 @@ use glam::DVec2;
 
 use super::Weighted;
 use super::order::{Buckets, Candidate};
+use crate::emit::Sample;
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
-use crate::points::Sample;
-use crate::sampling::{Amount, Limits, Sampling, SamplingError};
+use crate::sampling::{Amount, Limits, Sampling};
 
 /// Why there are no n points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +63,7 @@ impl From<SamplingError> for ExactError {
 /// times at 16,384, up to 3 times at 262,144. Some 90 bytes a point of memory, 40 of them the result.
 ///
 /// # Errors
-/// [`ExactError`]: all that [`Sampling::with_limits`] and its walk report, and [`ExactError::TooFew`].
+/// [`ExactError`]: all that [`Sampling::within`] and its walk report, and [`ExactError::TooFew`].
 /// `n` = 0 gives no points and no error.
 pub fn exactly<I: Importance>(
     placement: &Placement<'_>,
@@ -80,7 +81,7 @@ pub fn exactly<I: Importance>(
     }
     let domain = placement.domain();
     let integral = importance.integral(&domain);
-    let bound = importance.upper_bound(&domain.region());
+    let bound = importance.upper_bound(&domain.disc());
     if bound == 0.0 || integral == Some(0.0) {
         return Err(ExactError::TooFew { asked: n, found: 0 });
     }
@@ -92,25 +93,22 @@ pub fn exactly<I: Importance>(
     let walk_limits = Limits { points: u64::MAX, ..limits };
     let mut greatest: Option<f64> = None;
     loop {
-        let sampling = match Sampling::with_limits(
-            placement,
-            importance,
-            Amount::Density(density),
-            walk_limits,
-        ) {
-            Ok(sampling) => sampling,
-            // The deepest level caps the density: try exactly that, once.
-            Err(SamplingError::TooDense { near }) if greatest.is_none() => {
-                density = placement.greatest_threshold() / (placement.ranks_per_density() * bound)
-                    * (1.0 - 1e-12);
-                greatest = Some(density);
-                if !(density > 0.0 && density.is_finite()) {
-                    return Err(SamplingError::TooDense { near }.into());
+        let sampling =
+            match Sampling::within(placement, importance, Amount::Density(density), walk_limits) {
+                Ok(sampling) => sampling,
+                // The deepest level caps the density: try exactly that, once.
+                Err(SamplingError::TooDense { near }) if greatest.is_none() => {
+                    density = placement.greatest_threshold()
+                        / (placement.ranks_per_density() * bound)
+                        * (1.0 - 1e-12);
+                    greatest = Some(density);
+                    if !(density > 0.0 && density.is_finite()) {
+                        return Err(SamplingError::TooDense { near }.into());
+                    }
+                    continue;
                 }
-                continue;
-            }
-            Err(error) => return Err(error.into()),
-        };
+                Err(error) => return Err(error.into()),
+            };
         let candidates = candidates(&sampling, n, limits)?;
         let found = candidates.len();
         if found > n || (found == n && greatest.is_some()) {

@@ -36,6 +36,7 @@
 mod exact;
 mod order;
 mod stratified;
+mod sums;
 mod warp;
 mod weighted;
 

@@ -6,7 +6,7 @@ use core::cmp::Ordering;
 
 use glam::DVec2;
 
-/// Candidates a coarse bucket: with its keys it stays in the second-level cache.
+/// Candidates a coarse bucket: with its keys it unconstrained in the second-level cache.
 const COARSE: usize = 2048;
 
 /// The most coarse buckets: while points arrive, one cache line of each is being written.
@@ -123,7 +123,7 @@ fn order(bucket: &[Candidate], a: &Place, b: &Place) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::seed::SplitMix64;
+    use crate::random::SplitMix64;
     use proptest::prelude::*;
 
     fn check(keys: Vec<f64>, expected: usize, greatest: f64) {

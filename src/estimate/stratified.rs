@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::Weighted;
+use super::sums::{Cell, SumPyramid};
 use crate::importance::ImageMap;
-use crate::importance::sums::{Cell, SumPyramid};
 
 /// Replaces the weights of points that follow `map` by post-stratified ones.
 ///

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use glam::DVec2;
 
 use super::exact::{ExactError, exactly};
+use super::sums::SumPyramid;
 use super::weighted::Weighted;
 use crate::domain::Domain;
-use crate::importance::sums::SumPyramid;
 use crate::importance::{Constant, ImageMap};
 use crate::placement::Placement;
 use crate::sampling::Limits;
@@ -117,7 +117,7 @@ impl<'m> Warp<'m> {
         if n == 0 {
             return Ok(Vec::new());
         }
-        let placement = Placement::aligned(Domain::unit(), seed, n as f64)?;
+        let placement = Placement::aligned(Domain::UNIT, seed, n as f64)?;
         let uniform = exactly(&placement, &Constant::ONE, n, limits)?;
         Ok(uniform.iter().map(|point| self.weighted(point.position, n, point.rank)).collect())
     }

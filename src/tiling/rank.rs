@@ -9,56 +9,11 @@
 //! because an `a` tile has no D child and the `a` tiles of level m are exactly the first N_{m−1} ranks.
 //! A tile's centre child keeps its rank, so a rank is a fixed index into one endless sequence.
 
-use core::fmt;
-
-use super::counts::{MAX_LEVEL, TileCounts};
+use super::counts::{MAX_LEVEL, RankError, TileCounts};
 use super::cyclotomic::OutOfRange;
 use super::fcode::FCode;
-use super::subdivide::Rules;
+use super::rules::Rules;
 use super::tile::{Tile, TileType};
-
-/// Why a rank could not be computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RankError {
-    /// The level is past [`MAX_LEVEL`], where ranks leave `u64`.
-    TooDeep {
-        /// The level asked for.
-        level: usize,
-    },
-    /// The rank is not below the number of tiles of its level.
-    NoSuchRank {
-        /// The rank.
-        rank: u64,
-        /// The number of tiles.
-        tiles: u64,
-    },
-    /// The tile with this rank has no child with this digit.
-    NoSuchChild {
-        /// The rank.
-        rank: u64,
-        /// The digit; 13 (D) when the tile is of type `a`.
-        digit: u8,
-    },
-}
-
-impl fmt::Display for RankError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooDeep { level } => {
-                write!(f, "level {level} is past {MAX_LEVEL}, the last whose ranks fit 64 bits")
-            }
-            Self::NoSuchRank { rank, tiles } => {
-                write!(f, "rank {rank} is not below {tiles}, the number of tiles of its level")
-            }
-            Self::NoSuchChild { rank, digit } => {
-                write!(f, "the tile of rank {rank} has no child with digit {digit}")
-            }
-        }
-    }
-}
-
-impl core::error::Error for RankError {}
 
 /// The rank of the child with `digit` (0..14) of a level-`level` tile with rank `parent`.
 ///

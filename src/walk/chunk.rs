@@ -6,14 +6,16 @@ use core::ops::Range;
 
 use glam::DVec2;
 
-use super::batch::{Batch, tile_counts};
-use super::frame::Segment;
-use super::ground::Steps;
-use super::kin::Walk;
-use super::scalar::{Position, Scalar};
+use super::candidates::Candidates;
+use super::context::Context;
+use super::displaced::Displaced;
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
-use crate::sampling::{Sampling, SamplingError};
+use crate::position::{Position, Scalar};
+use crate::sampling::Sampling;
+use crate::tiling::TileCounts;
+use crate::tree::frame::Segment;
 
 /// Candidates a chunk. A block of depth 2 fits, and the arrays stay in the first-level cache.
 pub(crate) const CHUNK: usize = 256;
@@ -63,8 +65,8 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        walk: &Walk<'_, '_, I, S>,
-        batch: &Batch,
+        walk: &Context<'_, '_, I, S>,
+        batch: &Candidates,
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
@@ -92,7 +94,7 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn load(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
     ) -> usize {
         self.load_as(
@@ -109,9 +111,9 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn load_moved(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
-        steps: &Steps<'_, S>,
+        steps: &Displaced<'_, S>,
     ) -> usize {
         self.load_as(
             placement,
@@ -131,7 +133,7 @@ impl<S: Scalar> Chunk<S> {
     fn load_as(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
         write: impl Fn(usize, Segment<'_, S>, &mut [S], &mut [S]),
     ) -> usize {
@@ -161,9 +163,9 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn mark_inside<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        walk: &Walk<'_, '_, I, S>,
+        walk: &Context<'_, '_, I, S>,
     ) {
-        let Walk { sampling, clip, to_caller } = *walk;
+        let Context { sampling, clip, to_world } = *walk;
         let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
         let zero = S::default();
         let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
@@ -173,7 +175,7 @@ impl<S: Scalar> Chunk<S> {
         if let Some(rectangle) = clip.rectangle() {
             let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
             for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
-                let [x, y] = to_caller.place::<P>(*x, *y).xy();
+                let [x, y] = to_world.place::<P>(*x, *y).xy();
                 *keep &= u8::from(rectangle.contains(DVec2::new(x.to_f64(), y.to_f64())));
             }
         }
@@ -181,7 +183,7 @@ impl<S: Scalar> Chunk<S> {
 
     /// Notes which entries of the block the candidates are.
     #[inline(always)]
-    pub(crate) fn name_entries(&mut self) {
+    pub(crate) fn list_entries(&mut self) {
         for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
             // A block has at most 37,829 entries.
             *entry = (self.first + i) as u16;
@@ -193,7 +195,7 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn pack(&mut self) {
         if !self.packed {
-            self.name_entries();
+            self.list_entries();
         }
         let mut kept = 0;
         for i in 0..self.len.min(CHUNK) {
@@ -219,7 +221,7 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn mark_accepted<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
-        batch: &Batch,
+        batch: &Candidates,
     ) -> Result<(), SamplingError> {
         let len = self.len;
         let corner = sampling.placement().domain().min();
@@ -235,7 +237,7 @@ impl<S: Scalar> Chunk<S> {
 
         let block = batch.block(sampling.placement());
         let scale = sampling.scale();
-        let (tiles, before) = tile_counts(batch.node.level);
+        let (tiles, before) = TileCounts::HEXAGON.pair(batch.node.level);
         let (greatest, _) = block.rank_coefficients(batch.end - 1);
         let largest_term =
             batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));

@@ -36,7 +36,7 @@ fn prepare(
         return Ok(());
     }
     let device = device.wgpu_device();
-    let placement = Placement::new(Domain::unit(), 1);
+    let placement = Placement::new(Domain::UNIT, 1);
     let plan = Plan::new(
         &placement,
         (TEXELS, TEXELS),

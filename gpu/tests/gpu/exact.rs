@@ -1,7 +1,5 @@
 //! Sets and bits.
 
-use std::ops::ControlFlow;
-
 use glam::{DVec2, Vec2};
 use twelvefold::{
     Amount, Domain, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError,
@@ -50,10 +48,10 @@ impl Case {
                 .over(self.domain);
         let sampling = Sampling::new(&self.placement, &map, Amount::Density(self.density))?;
         let mut points = Vec::new();
-        sampling.visit(|sample: Sample<Vec2>| {
-            points.push((sample.rank, sample.position.to_array().map(f32::to_bits)));
-            ControlFlow::Continue(())
-        })?;
+        for sample in sampling.points::<Vec2>()? {
+            let Sample { rank, position } = sample?;
+            points.push((rank, position.to_array().map(f32::to_bits)));
+        }
         points.sort_unstable();
         Ok(points)
     }
@@ -126,7 +124,7 @@ fn sets_and_bits_are_the_cpus() {
     let Some(gpu) = device() else { return };
     let wide = rectangle([0.0, 0.0], [1.0, 0.7]);
     for (seed, points) in [(1, 64.0), (2, 5000.0), (3, 60_000.0)] {
-        let unit = Domain::unit();
+        let unit = Domain::UNIT;
         for case in [
             Case::new(unit, seed, (256, 256), points, smooth),
             Case::new(wide, seed, (100, 70), points, noise),
@@ -142,7 +140,7 @@ fn sets_and_bits_are_the_cpus() {
 #[test]
 fn a_million_points_are_the_cpus() {
     let Some(gpu) = device() else { return };
-    Case::new(Domain::unit(), 7, (512, 512), 1e6, noise).check(
+    Case::new(Domain::UNIT, 7, (512, 512), 1e6, noise).check(
         gpu,
         Order::Ordered,
         Arithmetic::Barriers,
@@ -160,7 +158,7 @@ fn integers_alone_give_the_same() {
 #[test]
 fn plain_arithmetic_differs_where_the_compiler_fuses() {
     let Some(gpu) = device() else { return };
-    let case = Case::new(Domain::unit(), 4, (64, 64), 20_000.0, smooth);
+    let case = Case::new(Domain::UNIT, 4, (64, 64), 20_000.0, smooth);
     let (plan, plain) = case.gpu(gpu, Order::Ordered, Arithmetic::Plain);
     let (cpu, plain) = (case.cpu().unwrap(), by_rank(&plan, &plain));
     let differ = cpu.iter().zip(&plain).filter(|(a, b)| a != b).count();
@@ -174,7 +172,7 @@ fn plain_arithmetic_differs_where_the_compiler_fuses() {
 #[test]
 fn order_repeats_and_appending_gives_the_same_set() {
     let Some(gpu) = device() else { return };
-    let case = Case::new(Domain::unit(), 11, (128, 128), 40_000.0, peak);
+    let case = Case::new(Domain::UNIT, 11, (128, 128), 40_000.0, peak);
     let once = case.check(gpu, Order::Ordered, Arithmetic::Barriers);
     assert!(once.status.subtiles > 0, "no tile was opened");
     assert_eq!(once, case.check(gpu, Order::Ordered, Arithmetic::Barriers));
@@ -184,7 +182,7 @@ fn order_repeats_and_appending_gives_the_same_set() {
 #[test]
 fn textures_are_as_good_as_buffers() {
     let Some(gpu) = device() else { return };
-    let case = Case::new(Domain::unit(), 5, (200, 64), 20_000.0, smooth);
+    let case = Case::new(Domain::UNIT, 5, (200, 64), 20_000.0, smooth);
     let from_buffer = case.check(gpu, Order::Ordered, Arithmetic::Barriers);
     let sampler =
         gpu.sampler(case.plan(case.room(), Order::Ordered), Source::Texture, Arithmetic::Barriers);
@@ -206,7 +204,7 @@ fn limits_are_exact_whatever_the_importance() {
     let Some(gpu) = device() else { return };
     // Arbitrary bits, and importance whose thresholds lie next to integers and to ranks.
     for seed in 0..6u64 {
-        let mut case = Case::new(Domain::unit(), seed, (96, 96), 30_000.0, |_, _| 1.0);
+        let mut case = Case::new(Domain::UNIT, seed, (96, 96), 30_000.0, |_, _| 1.0);
         let rank_shift = twelvefold::export::Export::of(&case.placement).rank_shift;
         let ranks =
             case.density * twelvefold::export::Export::of(&case.placement).ranks_per_density;
@@ -242,7 +240,7 @@ fn limits_are_exact_whatever_the_importance() {
 #[test]
 fn too_many_points_are_counted_and_flagged_and_the_first_are_kept() {
     let Some(gpu) = device() else { return };
-    let case = Case::new(Domain::unit(), 8, (64, 64), 20_000.0, smooth);
+    let case = Case::new(Domain::UNIT, 8, (64, 64), 20_000.0, smooth);
     let whole = case.check(gpu, Order::Ordered, Arithmetic::Barriers);
     let buffer = gpu.buffer(&case.pixels);
     for order in [Order::Ordered, Order::Append] {
@@ -267,7 +265,7 @@ fn too_many_points_are_counted_and_flagged_and_the_first_are_kept() {
 #[test]
 fn nothing_is_made_of_nothing() {
     let Some(gpu) = device() else { return };
-    let case = Case::new(Domain::unit(), 8, (64, 64), 2000.0, smooth);
+    let case = Case::new(Domain::UNIT, 8, (64, 64), 2000.0, smooth);
     let sampler =
         gpu.sampler(case.plan(case.room(), Order::Ordered), Source::Buffer, Arithmetic::Barriers);
     let (full, empty) = (gpu.buffer(&case.pixels), gpu.buffer(&[0.0; 64 * 64]));

@@ -1,7 +1,6 @@
 //! Relaxed points: the CPU's set, at the CPU's places within the documented error.
 
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 
 use glam::Vec2;
 use twelvefold::export::Export;
@@ -23,14 +22,10 @@ fn check(gpu: &Device, case: &Case, order: Order) {
         .over(case.domain);
     let sampling = Sampling::new(&case.placement, &map, Amount::Density(case.density)).unwrap();
     let mut cpu = BTreeMap::new();
-    sampling
-        .relaxed()
-        .unwrap()
-        .visit(|sample: Sample<Vec2>| {
-            cpu.insert(sample.rank, sample.position);
-            ControlFlow::Continue(())
-        })
-        .unwrap();
+    for sample in sampling.relaxed().unwrap().points::<Vec2>().unwrap() {
+        let Sample { rank, position } = sample.unwrap();
+        cpu.insert(rank, position);
+    }
     // Edges of the coarsest relaxed level are the longest.
     let export = Export::of(&case.placement);
     let edge = 2.0 * export.half_edges[6].length() * RELAXED_ERROR;
@@ -60,14 +55,14 @@ fn relaxed_points_are_where_the_cpu_has_them() {
     let Some(gpu) = device() else { return };
     for (seed, points) in [(1, 300.0), (2, 5000.0), (3, 60_000.0)] {
         for case in [
-            Case::new(Domain::unit(), seed, (128, 128), points, smooth),
+            Case::new(Domain::UNIT, seed, (128, 128), points, smooth),
             Case::new(rectangle([-2.0, 5.0], [1.0, 0.7]), seed, (10, 7), points, noise),
-            Case::new(Domain::unit(), seed, (128, 128), points, peak),
+            Case::new(Domain::UNIT, seed, (128, 128), points, peak),
             // So dark at the left that old centers are points of coarse levels.
-            Case::new(Domain::unit(), seed, (64, 1), points, |x, _| (8.0 * x).powi(4) / 4096.0),
+            Case::new(Domain::UNIT, seed, (64, 1), points, |x, _| (8.0 * x).powi(4) / 4096.0),
         ] {
             check(gpu, &case, Order::Ordered);
         }
     }
-    check(gpu, &Case::new(Domain::unit(), 4, (64, 64), 20_000.0, peak), Order::Append);
+    check(gpu, &Case::new(Domain::UNIT, 4, (64, 64), 20_000.0, peak), Order::Append);
 }

@@ -17,6 +17,7 @@ pub mod fidelity;
 pub mod nearest;
 pub mod periodogram;
 pub mod spectrum;
+pub mod stippling;
 
 use glam::DVec2;
 
@@ -60,7 +61,7 @@ impl Window {
 /// Distance between neighbours in a hexagonal lattice of `density` points a unit of area: √(2 / (√3·ρ)).
 #[must_use]
 pub fn hexagonal_distance(density: f64) -> f64 {
-    libm::sqrt(2.0 / (twelvefold::tiling::cyclotomic::SQRT_3 * density))
+    libm::sqrt(2.0 / (twelvefold::tiling::numbers::SQRT_3 * density))
 }
 
 /// How even a set of one density is.
