@@ -136,7 +136,7 @@ pub fn entries(tables: &Tables<'_>, kind: TileType, levels: u8) -> Vec<Entry> {
 /// use glam::DVec2;
 /// use twelvefold::export::position;
 /// let at = position(DVec2::new(0.5, 0.25), DVec2::new(0.125, 0.0), [1, 0, 0, 1]);
-/// assert_eq!(at.to_array().map(f32::to_bits), [0x3f20_0000, 0x3eee_d9eb]);
+/// assert_eq!(at.to_array().map(f32::to_bits), [0x3f20_0000, 0x3eee_d9ec]);
 /// ```
 #[must_use]
 pub fn position(origin: DVec2, half_edge: DVec2, [u, v, p, q]: [i32; 4]) -> Vec2 {
