@@ -67,6 +67,7 @@ mod domain;
 mod emit;
 mod error;
 pub mod estimate;
+pub mod export;
 pub mod importance;
 mod placement;
 mod position;

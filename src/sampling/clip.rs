@@ -116,6 +116,12 @@ impl<S: Scalar> ToWorld<S> {
         P::from_xy(within(self.min[0] + x, self.x_range), within(self.min[1] + y, self.y_range))
     }
 
+    /// What is added, and the least and the greatest number of the domain.
+    pub(crate) fn numbers(&self) -> [[S; 2]; 3] {
+        let (x, y) = (self.x_range, self.y_range);
+        [self.min, [x.0, y.0], [x.1, y.1]]
+    }
+
     /// Whether [`place`](Self::place) changes nothing.
     pub(crate) fn is_identity(&self) -> bool {
         self.at_origin
