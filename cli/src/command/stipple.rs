@@ -15,7 +15,7 @@ use crate::args::{Centres, MAX_POINTS, StippleOptions};
 use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
-use twelvefold_files::picture::{self, Tone};
+use twelvefold_files::picture::{self, Levels, Tone};
 use twelvefold_files::progress::Progress;
 
 /// Black area, in squared pixels, that gets one dot when no number is asked for: a dot every 3 pixels.
@@ -24,18 +24,31 @@ const AREA_PER_DOT: f64 = 9.0;
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let photo = &options.photo;
-    let of_photo = |reason: Box<dyn std::error::Error>| Failure::at(photo, reason);
+    let of_photo = |reason: Box<dyn std::error::Error>| {
+        if photo.as_os_str() == "-" {
+            Failure::about("standard input", reason)
+        } else {
+            Failure::at(photo, reason)
+        }
+    };
     let (kind, mut output) = open(options)?;
 
-    let tone = Tone { linear: options.linear, invert: options.invert };
-    let picture = picture::read(photo, tone).map_err(|error| of_photo(error.into()))?;
+    let tone = tone(options)?;
+    let picture = picture::read_layer(photo, tone, options.layer.as_deref())
+        .map_err(|error| of_photo(error.into()))?;
+    if !options.quiet {
+        for warning in &picture.warnings {
+            let warning = of_photo(format!("warning: {warning}").into());
+            let _ = writeln!(io::stderr(), "twelvefold: {warning}");
+        }
+    }
     let black = picture.total();
     let points = match options.points.or(options.exact) {
         Some(points) => points as f64,
         None => (black / AREA_PER_DOT).round().clamp(1.0, MAX_POINTS as f64),
     };
     if black == 0.0 && points > 0.0 {
-        return Err(of_photo(Box::new(Blank { invert: options.invert })));
+        return Err(of_photo(Box::new(Blank { invert: options.invert, range: picture.range })));
     }
     // Dots in a squared pixel of black.
     let density = points / black;
@@ -117,6 +130,26 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         );
     }
     Ok(())
+}
+
+/// The tone that the options ask for.
+fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
+    let plain = Levels::default();
+    let levels = Levels {
+        black: options.black.unwrap_or(plain.black),
+        white: options.white.unwrap_or(plain.white),
+        gamma: options.gamma.unwrap_or(plain.gamma),
+    };
+    if levels.black >= levels.white {
+        let reason = format!("{} is not below --white {}", levels.black, levels.white);
+        return Err(Failure::about("--black", reason));
+    }
+    Ok(Tone {
+        linear: options.linear,
+        invert: options.invert,
+        levels: (levels != plain).then_some(levels),
+        exposure: options.exposure,
+    })
 }
 
 /// What to write.
@@ -241,15 +274,25 @@ impl From<io::Error> for DrawError {
 #[derive(Debug)]
 struct Blank {
     invert: bool,
+    /// Of a float file.
+    range: Option<(f64, f64)>,
 }
 
 impl fmt::Display for Blank {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(if self.invert {
-            "is all black, which leaves no place for dots; try without --invert"
-        } else {
-            "is all white, which leaves no place for dots; try --invert"
-        })
+        match self.range {
+            Some((least, greatest)) if !self.invert && least >= 1.0 => write!(
+                out,
+                "is brighter than 1, which is white, everywhere ({least:.3} to {greatest:.3}); \
+                 try --exposure {}",
+                -greatest.log2().ceil().max(1.0)
+            ),
+            _ => out.write_str(if self.invert {
+                "is all black, which leaves no place for dots; try without --invert"
+            } else {
+                "is all white, which leaves no place for dots; try --invert"
+            }),
+        }
     }
 }
 

@@ -84,7 +84,7 @@ pub(crate) fn run(options: &ReportOptions) -> Result<(), Failure> {
     let photo = match &options.photo {
         None => tone::drawing(),
         Some(path) => {
-            let tone = Tone { linear: false, invert: false };
+            let tone = Tone { linear: false, invert: false, ..Tone::default() };
             let photo = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
             ImageMap::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
                 .map_err(|error| Failure::at(path, error))?
