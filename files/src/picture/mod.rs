@@ -1,6 +1,8 @@
 //! Reading a photograph into importance: format by content, memory by header, tone by option.
 
 mod aspect;
+#[cfg(test)]
+mod cases;
 mod cicp;
 mod color;
 mod exif;

@@ -1,6 +1,6 @@
 //! PNG: 1 to 16 bits, gray, colour or palette, with the colours that its chunks say.
 
-use std::io::{Read as _, Seek as _, SeekFrom};
+use std::io::{Cursor, Read as _, Seek as _, SeekFrom};
 
 use image::metadata::Orientation;
 use png::{BitDepth, ColorType, DecodingError, Info, Transformations};
@@ -14,13 +14,34 @@ use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, cicp, exi
 /// Longest chunk beside the pixels whose checksum is looked at.
 const LONGEST: u32 = 1 << 20;
 
+const END_CHUNK: &[u8] = b"\0\0\0\0IEND\xaeB`\x82";
+
 /// Reads a PNG file; of an animation, the picture that programs without animation show.
 pub(super) fn read<P: Pixel>(
     mut source: Source,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
     let chunks = Chunks::scan(&mut source)?;
+    if !chunks.ended {
+        // The decoder gives no row out before it has seen what follows the pixels.
+        let mut bytes = source.into_bytes()?;
+        bytes.truncate(usize::try_from(chunks.end).unwrap_or(usize::MAX));
+        bytes.extend(END_CHUNK);
+        source = Source::Memory(Cursor::new(bytes));
+    }
     source.rewind()?;
+    let ended = chunks.ended;
+    read_chunks(source, chunks, wanted).map_err(|error| match error {
+        PictureError::Decode(..) if !ended => PictureError::Truncated(Format::Png),
+        error => error,
+    })
+}
+
+fn read_chunks<P: Pixel>(
+    source: Source,
+    chunks: Chunks,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
     let mut decoder =
         png::Decoder::new_with_limits(source, png::Limits { bytes: limits::MEMORY_LIMIT as usize });
     decoder.set_ignore_text_chunk(true);
@@ -110,6 +131,8 @@ fn space(info: &Info<'_>, colors: Colors, warnings: &mut Vec<String>) -> Space {
 struct Chunks {
     orientation: Orientation,
     ended: bool,
+    /// Where the last whole chunk ends.
+    end: u64,
     /// The name of one with a wrong checksum that is not needed.
     damaged: Option<[u8; 4]>,
 }
@@ -117,9 +140,10 @@ struct Chunks {
 impl Chunks {
     fn scan(source: &mut Source) -> Result<Self, PictureError> {
         let mut found =
-            Self { orientation: Orientation::NoTransforms, ended: false, damaged: None };
+            Self { orientation: Orientation::NoTransforms, ended: false, end: 8, damaged: None };
         let mut place = 8;
         loop {
+            found.end = place;
             source.seek(SeekFrom::Start(place))?;
             let mut head = Vec::with_capacity(8);
             source.by_ref().take(8).read_to_end(&mut head)?;
