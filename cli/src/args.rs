@@ -108,7 +108,8 @@ fn window(text: &str) -> Result<Window, String> {
 /// Options of `twelvefold envmap`.
 #[derive(Debug, Args)]
 pub(crate) struct EnvmapOptions {
-    /// The environment map: Radiance HDR or OpenEXR, told apart by content.
+    /// The environment map, or `-` for standard input: Radiance HDR, OpenEXR, PFM or float TIFF, told
+    /// apart by content.
     pub(crate) map: PathBuf,
 
     /// How many directions, at most 10,000,000. Exactly as many are chosen.
@@ -176,11 +177,38 @@ fn tile_type() -> impl TypedValueParser<Value = TileType> {
 /// Options of `twelvefold stipple`.
 #[derive(Debug, Args)]
 pub(crate) struct StippleOptions {
-    /// The photograph: PNG, JPEG, TIFF, Radiance HDR or OpenEXR, told apart by content.
+    /// The photograph, or `-` for standard input: PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa,
+    /// QOI, farbfeld, Radiance HDR or OpenEXR, told apart by content.
     ///
-    /// Transparent pixels are laid over white. In float files negative values count as zero and
-    /// values above one as white; a NaN or an infinity is an error.
+    /// Colour profiles are followed, and the photograph is turned upright. Transparent pixels get no
+    /// dots. In float files negative values count as zero and values above one as white; a NaN or an
+    /// infinity is an error.
     pub(crate) photo: PathBuf,
+
+    /// The gray level, of 255, from which on the photograph counts as white: 250 for paper that was
+    /// scanned a little gray.
+    ///
+    /// Levels are encoded sRGB also with --linear, which takes the light of this level as white.
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub(crate) white: Option<f64>,
+
+    /// The gray level, of 255, up to which the photograph counts as black; below that of --white.
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub(crate) black: Option<f64>,
+
+    /// Lighten (above 1) or darken the middle: brightness from 0 to 1, after --black and --white, is
+    /// raised to 1/GAMMA.
+    #[arg(long, value_name = "GAMMA", value_parser = positive)]
+    pub(crate) gamma: Option<f64>,
+
+    /// Multiply the light of a float file by 2 to this power, before anything else.
+    #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
+    pub(crate) exposure: Option<f64>,
+
+    /// Which layer of an OpenEXR file is drawn, such as ViewLayer.Combined [default: the one without a
+    /// name, or the only one].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) layer: Option<String>,
 
     /// Where the dots go: a file ending in .svg, .png or .csv, or `-` for CSV on standard output.
     #[arg(short, long, value_name = "OUT")]
@@ -273,6 +301,22 @@ pub(crate) enum Centers {
     Relaxed,
     /// At the centres of tiles.
     Fixed,
+}
+
+/// Reads a gray level.
+fn level(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(level) if (0.0..=255.0).contains(&level) => Ok(level),
+        _ => Err("not a number from 0 to 255".to_owned()),
+    }
+}
+
+/// Reads a number of stops.
+fn stops(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(stops) if (-128.0..=128.0).contains(&stops) => Ok(stops),
+        _ => Err("not a number from -128 to 128".to_owned()),
+    }
 }
 
 /// Reads a finite number above zero.

@@ -13,7 +13,13 @@ use twelvefold_files::picture;
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &EnvmapOptions) -> Result<(), Failure> {
-    let of_map = |reason: Box<dyn std::error::Error>| Failure::at(&options.map, reason);
+    let of_map = |reason: Box<dyn std::error::Error>| {
+        if options.map.as_os_str() == "-" {
+            Failure::about("standard input", reason)
+        } else {
+            Failure::at(&options.map, reason)
+        }
+    };
     let standard = options.output.as_os_str() == "-";
     let of_output = |error: OutputError| {
         if standard {

@@ -35,7 +35,7 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let image = match &options.image {
         None => None,
         Some(path) => {
-            let tone = Tone { linear: options.linear, invert: options.invert };
+            let tone = Tone { linear: options.linear, invert: options.invert, ..Tone::default() };
             let picture = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
             Some(picture)
         }

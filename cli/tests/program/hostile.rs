@@ -180,8 +180,9 @@ fn what_is_no_photograph_says_so() {
     let missing = folder.path().join("missing.png");
     assert!(complaint(&missing, &[]).starts_with("cannot be read: "));
     assert_eq!(complaint(folder.path(), &[]), "is not a regular file");
-    let unknown = "is not a PNG, JPEG, TIFF, Radiance HDR or OpenEXR file";
-    for bytes in [&b""[..], b"x", b"GIF89a..........", b"\x89PNG"] {
+    let unknown = "is not a PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa, QOI, farbfeld, \
+                   Radiance HDR or OpenEXR file";
+    for bytes in [&b""[..], b"x", b"GIF80a..........", b"\x89PNG"] {
         assert_eq!(complaint(&written(&folder, "strange.png", bytes), &[]), unknown);
     }
     if cfg!(unix) {
