@@ -7,10 +7,10 @@ use twelvefold::bake::displacement::{
     DELTA, DisplacementError, Displacements, Layer, MAGIC, Slot, VERSION, born_classes,
 };
 use twelvefold::tiling::{Rules, TileType};
-use twelvefold_lab::train::report::{
+use twelvefold_lab::train::evaluate::{
     TEST_IMAGE_SIDE, edge_image, image_sweep, test_image, uniform_sweep, worst,
 };
-use twelvefold_lab::train::{Recipe, report};
+use twelvefold_lab::train::{Recipe, evaluate};
 
 const COMMITTED: &[u8] = include_bytes!("../../tables/relaxed.bin");
 
@@ -85,7 +85,7 @@ fn the_stated_bound_on_vectors_holds_for_every_class_and_phase() {
     for layer in layers.into_iter().flatten() {
         let mut longest_seen = 0.0f64;
         for k in 0..60 {
-            let tau = report::phase(k, 60);
+            let tau = evaluate::phase(k, 60);
             let bound = layer.longest(tau, tau);
             let longest = tiles
                 .iter()

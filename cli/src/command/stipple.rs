@@ -5,41 +5,95 @@ use std::io::{self, ErrorKind, Write as _};
 use std::path::Path;
 
 use glam::DVec2;
-use twelvefold::estimate::exactly;
-use twelvefold::{
-    Amount, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Sample, Sampling,
-    SamplingError, StippleMap,
-};
-
-use crate::args::{Centres, MAX_POINTS, StippleOptions};
-use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
-use twelvefold_files::picture::{self, Tone};
+use twelvefold_files::picture::{self, Picture, Tone};
 use twelvefold_files::progress::Progress;
 
-/// Black area, in squared pixels, that gets one dot when no number is asked for: a dot every 3 pixels.
-const AREA_PER_DOT: f64 = 9.0;
+use crate::args::{Centers, DotGain, StippleOptions};
+use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
+use crate::stipple::budget::{default_count, default_dot_size};
+use crate::stipple::dots::{self, Count, DotsError, Wish};
+use crate::stipple::gain;
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
-    let photo = &options.photo;
-    let of_photo = |reason: Box<dyn std::error::Error>| Failure::at(photo, reason);
     let (kind, mut output) = open(options)?;
-
-    let tone = Tone { linear: options.linear, invert: options.invert };
-    let picture = picture::read(photo, tone).map_err(|error| of_photo(error.into()))?;
-    let black = picture.total();
-    let points = match options.points.or(options.exact) {
-        Some(points) => points as f64,
-        None => (black / AREA_PER_DOT).round().clamp(1.0, MAX_POINTS as f64),
-    };
-    if black == 0.0 && points > 0.0 {
-        return Err(of_photo(Box::new(Blank { invert: options.invert })));
+    let mut picture = read(options)?;
+    let gain = options.dot_gain.unwrap_or(kind.dot_gain());
+    if gain == DotGain::Correct {
+        gain::correct(&mut picture.importance);
     }
+    let wish = wish(options, picture.total());
+    let style = style(options, &picture, wish.count);
+    let mut progress = Progress::new(wish.count.number(), options.quiet);
+    let to = Target { output: &mut output, style: &style, progress: &mut progress };
+    let drawn = draw_as(kind, &picture, wish, to);
+    let (points, time) = progress.finish();
+    match drawn {
+        Ok(()) => {}
+        Err(DotsError::Taker(DrawError::Write(error))) => {
+            return finish(options, Err(OutputError::Io(error)));
+        }
+        Err(DotsError::Taker(DrawError::Picture(error))) => {
+            return Err(Failure::at(&options.output, error));
+        }
+        Err(error) => return Err(Failure::at(&options.photo, error)),
+    }
+    finish(options, output.commit())?;
+    if !options.quiet {
+        let seconds = time.as_secs_f64();
+        let streamed = match (options.refine, wish.refine) {
+            (None, 0) => ", not refined since so many are drawn as they come (see --refine)",
+            _ => "",
+        };
+        // Stderr may be closed; the points are written all the same.
+        let _ = writeln!(
+            io::stderr(),
+            "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second{streamed}",
+            points as f64 / seconds.max(1e-9)
+        );
+    }
+    Ok(())
+}
+
+/// Reads the photograph, which must not be blank if dots are to be drawn.
+fn read(options: &StippleOptions) -> Result<Picture, Failure> {
+    let tone = Tone { linear: options.linear, invert: options.invert };
+    let picture =
+        picture::read(&options.photo, tone).map_err(|error| Failure::at(&options.photo, error))?;
+    let nothing = options.points == Some(0) || options.exact == Some(0);
+    if picture.total() == 0.0 && !nothing {
+        return Err(Failure::at(&options.photo, Blank { invert: options.invert }));
+    }
+    Ok(picture)
+}
+
+/// What the options ask for, of a picture whose importance adds up to `black`.
+fn wish(options: &StippleOptions, black: f64) -> Wish {
+    let count = match (options.exact, options.points) {
+        (Some(count), _) => Count::Exactly(count as usize),
+        (None, Some(count)) => Count::About(count as f64),
+        (None, None) => Count::About(default_count(black)),
+    };
+    let iterations = dots::default_iterations(count.number());
+    Wish {
+        count,
+        centers: options.centers.unwrap_or(Centers::Relaxed),
+        seed: options.seed,
+        refine: options.refine.map_or(iterations, usize::from),
+    }
+}
+
+fn style(options: &StippleOptions, picture: &Picture, count: Count) -> Style {
     // Dots in a squared pixel of black.
-    let density = points / black;
-    let style = Style {
+    let density = count.number() / picture.total();
+    let photo = &options.photo;
+    let (about, count) = match count {
+        Count::About(count) => ("about ", count),
+        Count::Exactly(count) => ("", count as f64),
+    };
+    Style {
         width: picture.width,
         height: picture.height,
         scale: options.scale,
@@ -49,74 +103,19 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         linear: options.linear,
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
         description: format!(
-            "Stippled with {}{points} dots by twelvefold {}, seed {}",
-            if options.exact.is_some() { "" } else { "about " },
+            "Stippled with {about}{count} dots by twelvefold {}, seed {}",
             env!("CARGO_PKG_VERSION"),
             options.seed
         ),
-    };
+    }
+}
 
-    let mut progress = Progress::new(points, options.quiet);
-    let (width, height, pixels) = (picture.width, picture.height, picture.importance);
-    let invalid = InvalidPixels::Reject;
-    let to = (&mut output, &style, &mut progress);
-    let drawn = match (options.exact, options.centres.unwrap_or(Centres::Relaxed)) {
-        (Some(n), _) => {
-            let map = ImageMap::new(width, height, pixels, invalid)
-                .map_err(|error| of_photo(error.into()))?;
-            let placement = Placement::new(map.domain(), options.seed);
-            let dots = exactly(&placement, &map, n as usize, Limits::default())
-                .map_err(|error| of_photo(error.into()))?;
-            let mut positions = dots.iter().map(|dot| Ok(dot.position));
-            draw_as(kind, &mut positions, map.domain(), to)
-        }
-        (None, Centres::Fixed) => {
-            let map = ImageMap::new(width, height, pixels, invalid)
-                .map_err(|error| of_photo(error.into()))?;
-            let placement = Placement::new(map.domain(), options.seed);
-            let sampling = Sampling::new(&placement, &map, Amount::Points(points));
-            let sampling = sampling.map_err(|error| of_photo(error.into()))?;
-            draw_sampling(kind, &sampling, to)
-        }
-        (None, Centres::Relaxed) => {
-            let map = StippleMap::new(width, height, pixels, invalid, points)
-                .map_err(|error| of_photo(error.into()))?;
-            let placement = Placement::new(map.domain(), options.seed);
-            let sampling = Sampling::new(&placement, &map, Amount::Points(points))
-                .and_then(Sampling::relaxed)
-                .map_err(|error| of_photo(error.into()))?;
-            draw_sampling(kind, &sampling, to)
-        }
-    };
-    let written = match drawn {
-        Ok(()) => output.commit(),
-        Err(DrawError::Write(error)) => Err(error.into()),
-        Err(DrawError::Picture(error)) => {
-            progress.finish();
-            return Err(Failure::at(&options.output, error));
-        }
-        Err(DrawError::Sampling(error)) => {
-            progress.finish();
-            return Err(of_photo(error.into()));
-        }
-    };
-    let (points, time) = progress.finish();
+/// A file that could not be written is an error, unless whoever read it has had enough.
+fn finish(options: &StippleOptions, written: Result<(), OutputError>) -> Result<(), Failure> {
     match written {
-        Ok(()) => {}
-        // Whoever read the points has had enough of them.
-        Err(OutputError::Io(error)) if error.kind() == ErrorKind::BrokenPipe => return Ok(()),
-        Err(error) => return Err(of_output(&options.output, error)),
+        Err(OutputError::Io(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(|error| of_output(&options.output, error)),
     }
-    if !options.quiet {
-        let seconds = time.as_secs_f64();
-        // Stderr may be closed; the points are written all the same.
-        let _ = writeln!(
-            io::stderr(),
-            "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second",
-            points as f64 / seconds.max(1e-9)
-        );
-    }
-    Ok(())
 }
 
 /// What to write.
@@ -134,6 +133,14 @@ impl Kind {
         [("csv", Self::Csv), ("svg", Self::Svg), ("png", Self::Png)]
             .into_iter()
             .find_map(|(name, kind)| extension.eq_ignore_ascii_case(name).then_some(kind))
+    }
+
+    /// Ink is drawn so that it covers what is dark; a list of points has no ink.
+    fn dot_gain(self) -> DotGain {
+        match self {
+            Self::Csv => DotGain::Ignore,
+            Self::Svg | Self::Png => DotGain::Correct,
+        }
     }
 }
 
@@ -158,57 +165,50 @@ fn of_output(path: &Path, error: OutputError) -> Failure {
     }
 }
 
-/// The diameter at which `density` dots in a squared pixel have an area of one squared pixel.
-fn default_dot_size(density: f64) -> f64 {
-    if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
-}
-
 /// Where drawn dots go: the file, how they look, and who is told of them.
-type Target<'a> = (&'a mut Output, &'a Style, &'a mut Progress);
-
-/// Draws every point of `sampling` as a file of this kind.
-fn draw_sampling(
-    kind: Kind,
-    sampling: &Sampling<'_, impl Importance>,
-    to: Target<'_>,
-) -> Result<(), DrawError> {
-    // In 64 bits because 32 would be too few in a picture with sides of very different length.
-    let mut positions =
-        sampling.points()?.map(|point| point.map(|Sample::<DVec2> { position, .. }| position));
-    draw_as(kind, &mut positions, sampling.placement().domain(), to)
+struct Target<'a> {
+    output: &'a mut Output,
+    style: &'a Style,
+    progress: &'a mut Progress,
 }
 
-/// Draws dots as a file of this kind.
+/// Draws a picture's dots as a file of this kind.
 fn draw_as(
     kind: Kind,
-    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
-    domain: Domain,
-    (output, style, progress): Target<'_>,
-) -> Result<(), DrawError> {
+    picture: &Picture,
+    wish: Wish,
+    Target { output, style, progress }: Target<'_>,
+) -> Result<(), DotsError<DrawError>> {
+    let write = |error| DotsError::Taker(DrawError::Write(error));
     match kind {
-        Kind::Csv => draw(positions, domain, Csv::new(output)?, progress),
-        Kind::Svg => draw(positions, domain, Svg::new(output, style)?, progress),
+        Kind::Csv => draw(picture, wish, Csv::new(output).map_err(write)?, progress),
+        Kind::Svg => draw(picture, wish, Svg::new(output, style).map_err(write)?, progress),
         Kind::Png => {
-            let png = Png::new(output, style).map_err(DrawError::Picture)?;
-            draw(positions, domain, png, progress)
+            let png = Png::new(output, style)
+                .map_err(|error| DotsError::Taker(DrawError::Picture(error)))?;
+            draw(picture, wish, png, progress)
         }
     }
 }
 
 /// Puts every dot into `drawing`.
 fn draw(
-    positions: &mut dyn Iterator<Item = Result<DVec2, SamplingError>>,
-    domain: Domain,
+    picture: &Picture,
+    wish: Wish,
     mut drawing: impl Drawing,
     progress: &mut Progress,
-) -> Result<(), DrawError> {
-    let end = domain.max();
-    for position in positions {
-        let DVec2 { x, y } = position?;
-        drawing.dot(narrowed(x, end.x), narrowed(y, end.y))?;
-        progress.point();
-    }
-    Ok(drawing.finish()?)
+) -> Result<(), DotsError<DrawError>> {
+    let end = DVec2::new(picture.width as f64, picture.height as f64);
+    dots::place(
+        picture,
+        wish,
+        || {},
+        |DVec2 { x, y }| {
+            progress.point();
+            drawing.dot(narrowed(x, end.x), narrowed(y, end.y)).map_err(DrawError::Write)
+        },
+    )?;
+    drawing.finish().map_err(|error| DotsError::Taker(DrawError::Write(error)))
 }
 
 /// The 32-bit float nearest to `coordinate` of those below `end`.
@@ -220,22 +220,20 @@ fn narrowed(coordinate: f64, end: f64) -> f32 {
 /// Why drawing stopped.
 #[derive(Debug)]
 enum DrawError {
-    Sampling(SamplingError),
     Write(io::Error),
     Picture(PngError),
 }
 
-impl From<SamplingError> for DrawError {
-    fn from(error: SamplingError) -> Self {
-        Self::Sampling(error)
+impl fmt::Display for DrawError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Write(error) => error.fmt(out),
+            Self::Picture(error) => error.fmt(out),
+        }
     }
 }
 
-impl From<io::Error> for DrawError {
-    fn from(error: io::Error) -> Self {
-        Self::Write(error)
-    }
-}
+impl std::error::Error for DrawError {}
 
 /// The photograph has nothing to put dots on.
 #[derive(Debug)]
@@ -275,13 +273,5 @@ mod tests {
             assert!(f64::from(narrow) < end && f64::from(narrow.next_up()) >= end, "{end}");
         }
         assert_eq!(narrowed(0.1, 1.0), 0.1);
-    }
-
-    #[test]
-    fn dots_of_the_default_size_cover_black_once() {
-        let density = 1.0 / AREA_PER_DOT;
-        let diameter = default_dot_size(density);
-        let area = std::f64::consts::PI * diameter * diameter / 4.0;
-        assert!((area * density - 1.0).abs() < 1e-12);
     }
 }

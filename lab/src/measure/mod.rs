@@ -17,6 +17,7 @@ pub mod fidelity;
 pub mod nearest;
 pub mod periodogram;
 pub mod spectrum;
+pub mod stippling;
 
 use glam::DVec2;
 

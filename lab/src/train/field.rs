@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::ground::{BASE_LEVEL, density, edge};
+use super::place::{BASE_LEVEL, density, edge};
 use twelvefold::tiling::TileCounts;
 
 /// A threshold at every place. Lengths are in edges of the ground's base level.

@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::field::{Field, threshold_of_phase};
-use super::ground::density;
+use super::place::density;
 use twelvefold::Disc;
 use twelvefold::importance::{BilinearMap, ImageMap, Importance, InvalidPixels, StippleMap};
 
@@ -125,7 +125,7 @@ impl<I: Importance + Sync> Field for Image<I> {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::train::report::{TEST_IMAGE_SIDE, edge_image, test_image};
+    use crate::train::evaluate::{TEST_IMAGE_SIDE, edge_image, test_image};
 
     #[test]
     fn images_that_ask_for_nothing_are_refused() {

@@ -3,7 +3,7 @@
 use glam::{DVec2, Vec2};
 
 use super::field::{Field, level_of, spacing};
-use super::ground::{Descend, Ground, Region};
+use super::place::{Descend, Place, Region};
 use twelvefold::bake::class::Classes;
 use twelvefold::bake::displacement::Displacements;
 use twelvefold::tiling::OutOfRange;
@@ -37,13 +37,13 @@ pub struct Site {
 /// # Errors
 /// [`OutOfRange`] when the field needs more than 5 levels below the base level.
 pub fn sites(
-    ground: &Ground<'_>,
+    ground: &Place<'_>,
     field: &impl Field,
     region: Region,
 ) -> Result<Vec<Site>, OutOfRange> {
     let mut sites = Vec::new();
     ground.walk(region, &mut |node| {
-        let edge = super::ground::edge(node.level);
+        let edge = super::place::edge(node.level);
         let bound = field.bound(node.centre, edge * core::f64::consts::FRAC_1_SQRT_2);
         let tiles = twelvefold::tiling::TileCounts::HEXAGON.all()[node.level] as f64;
         if region.touches(node.centre, 0.0) {
@@ -107,7 +107,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::train::field::{Constant, threshold_of_phase};
-    use crate::train::ground::{BASE_LEVEL, density};
+    use crate::train::place::{BASE_LEVEL, density};
     use twelvefold::tiling::{Digits, FCode, Rules, Tile, TileType};
 
     fn rules() -> Rules {
@@ -121,7 +121,7 @@ mod tests {
         for (tau, level) in [(3.3, BASE_LEVEL), (0.4, BASE_LEVEL - 1), (20.0, BASE_LEVEL + 1)] {
             let field = Constant(threshold_of_phase(tau));
             let radius = 20.0 * spacing(field.0);
-            let ground = Ground::random(&rules, radius, &mut Random::new(5, &[])).unwrap();
+            let ground = Place::random(&rules, radius, &mut Random::new(5, &[])).unwrap();
             let sites = sites(&ground, &field, Region::Disc(radius)).unwrap();
             let expected = density(field.0) * core::f64::consts::PI * radius * radius;
             assert!(

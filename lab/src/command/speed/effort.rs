@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use twelvefold::{Amount, Placement, Sampling};
 
-use crate::common;
+use twelvefold_lab::maps;
 
 const COUNTS: [usize; 5] = [1 << 6, 1 << 10, 1 << 14, 1 << 17, 1 << 20];
 
@@ -19,7 +19,7 @@ pub(crate) fn table() -> String {
     }
     text += "\n|---|";
     text += &"---:|".repeat(COUNTS.len());
-    for map in &common::maps::all() {
+    for map in &maps::all() {
         let placement = Placement::new(map.importance.domain(), 1);
         let _ = write!(text, "\n| {} map |", map.name);
         for n in COUNTS {

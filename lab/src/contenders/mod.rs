@@ -1,12 +1,6 @@
 //! What the benches and the speed report compare: our ways to make points and their peers, each at its
 //! best: tables built before, buffers kept, nothing allocated while the clock runs.
 
-#![allow(dead_code, reason = "each bench uses a part")]
-
-pub(crate) mod groups;
-pub(crate) mod maps;
-pub(crate) mod peers;
-
 use std::hint::black_box;
 
 use glam::Vec2;
@@ -15,25 +9,27 @@ use twelvefold::{
     SamplingError, StippleMap, Tables, bake,
 };
 
-use maps::Map;
+use crate::maps::{self, Map};
+
+mod peers;
 
 /// Writes points to a buffer's start; returns how many.
 type Maker<'a> = Box<dyn FnMut(&mut [Vec2]) -> usize + 'a>;
 
 /// A way to make points.
-pub(crate) struct Contender<'a> {
+pub struct Contender<'a> {
     /// As the table shows it.
-    pub(crate) name: String,
+    pub name: String,
     /// The most points it is asked for: some are too slow for more.
-    pub(crate) most: usize,
+    pub most: usize,
     /// Prepares `n` points (not timed) and returns what makes them (timed): it writes them to the
     /// buffer's start and returns how many.
-    pub(crate) prepare: Box<dyn Fn(usize) -> Maker<'a> + 'a>,
+    pub prepare: Box<dyn Fn(usize) -> Maker<'a> + 'a>,
 }
 
 impl<'a> Contender<'a> {
     /// A contender that makes any number of points.
-    pub(crate) fn new<F, G>(name: &str, prepare: F) -> Self
+    pub fn new<F, G>(name: &str, prepare: F) -> Self
     where
         F: Fn(usize) -> G + 'a,
         G: FnMut(&mut [Vec2]) -> usize + 'a,
@@ -43,13 +39,13 @@ impl<'a> Contender<'a> {
     }
 
     /// The same for at most `most` points.
-    pub(crate) fn at_most(self, most: usize) -> Self {
+    pub fn at_most(self, most: usize) -> Self {
         Self { most, ..self }
     }
 
     /// Panics unless `made` is the number asked for: exactly for sequences, within a few standard
     /// deviations where the number is random.
-    pub(crate) fn assert_count(&self, asked: usize, made: usize) {
+    pub fn assert_count(&self, asked: usize, made: usize) {
         let slack = 8.0 * (asked as f64).sqrt() + 8.0;
         assert!((made as f64 - asked as f64).abs() <= slack, "{}: {made} for {asked}", self.name);
     }
@@ -101,7 +97,6 @@ fn ours<'a, I: Importance + 'a>(
 }
 
 /// Ours on two threads, in one piece of memory a part.
-#[cfg(feature = "parallel")]
 fn two_threads<'a, I: Importance + Sync>(
     domain: Domain,
     relaxed: bool,
@@ -122,7 +117,7 @@ fn two_threads<'a, I: Importance + Sync>(
 }
 
 /// Copying as many points as there are.
-pub(crate) fn memcpy<'a>() -> Contender<'a> {
+pub fn memcpy<'a>() -> Contender<'a> {
     Contender::new("memcpy of the same bytes", |n| {
         let source = vec![Vec2::ONE; n];
         move |buffer| {
@@ -133,7 +128,7 @@ pub(crate) fn memcpy<'a>() -> Contender<'a> {
 }
 
 /// Uniform density over the unit square, memcpy first.
-pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
+pub fn uniform<'a>() -> Vec<Contender<'a>> {
     let mut all = vec![memcpy()];
     for depth in 2..=bake::MAX_DEPTH {
         let bytes = bake::bake(&Tables::built_in().rules(), depth, None).expect("a depth in range");
@@ -144,7 +139,6 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
     }
     let tables = Tables::built_in();
     all.push(ours("twelvefold, relaxed", Domain::UNIT, tables, true, |_| Constant::ONE));
-    #[cfg(feature = "parallel")]
     for relaxed in [false, true] {
         all.push(two_threads(Domain::UNIT, relaxed, &Constant::ONE));
     }
@@ -153,13 +147,12 @@ pub(crate) fn uniform<'a>() -> Vec<Contender<'a>> {
 }
 
 /// An importance map over its pixels, memcpy first.
-pub(crate) fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
+pub fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
     let importance: &'a ImageMap = &map.importance;
     let (domain, tables) = (importance.domain(), Tables::built_in());
     let mut all = vec![memcpy()];
     all.push(ours("twelvefold", domain, tables, false, move |_| importance));
     all.push(ours("twelvefold, relaxed", domain, tables, true, move |_| importance));
-    #[cfg(feature = "parallel")]
     for relaxed in [false, true] {
         all.push(two_threads(domain, relaxed, importance));
     }

@@ -1,24 +1,22 @@
 //! Writes the speed table (Markdown) and its picture (SVG): every contender of the benches, in one
 //! process, one thread, least time of several runs.
-//!
-//! `cargo run --release --features parallel --example speed_report -- -o DIR`; without the feature, all
-//! but the rows of two threads.
 
-#[path = "../../../benches/common/mod.rs"]
-mod common;
 mod effort;
 mod picture;
 mod targets;
 
-use std::error::Error;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::io::Write as _;
 use std::process::Command;
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
-use common::Contender;
 use glam::Vec2;
+use twelvefold_files::failure::Failure;
+use twelvefold_lab::contenders::{self, Contender};
+use twelvefold_lab::maps;
+
+use crate::args::SpeedOptions;
 
 /// Numbers of points of the uniform table.
 const UNIFORM: [usize; 6] = [1 << 6, 1 << 10, 1 << 14, 1 << 16, 1 << 20, 1 << 24];
@@ -149,18 +147,15 @@ fn machine() -> String {
     )
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = env::args().skip(1);
-    let directory = match (arguments.next().as_deref(), arguments.next(), arguments.next()) {
-        (Some("-o"), Some(directory), None) => PathBuf::from(directory),
-        _ => return Err("usage: speed_report -o DIRECTORY".into()),
-    };
-    fs::create_dir_all(&directory)?;
+/// Runs the subcommand.
+pub(crate) fn run(options: &SpeedOptions) -> Result<(), Failure> {
+    let folder = &options.output;
+    fs::create_dir_all(folder).map_err(|error| Failure::at(folder, error))?;
 
-    let mut tables = vec![measure("Uniform".into(), &UNIFORM, &common::uniform())];
-    for map in &common::maps::all() {
+    let mut tables = vec![measure("Uniform".into(), &UNIFORM, &contenders::uniform())];
+    for map in &maps::all() {
         let title = format!("{} map, largest over mean {:.0}", map.name, map.contrast());
-        tables.push(measure(title, &IMAGE, &common::image(map)));
+        tables.push(measure(title, &IMAGE, &contenders::image(map)));
     }
     let targets = targets::table(&tables);
     let effort = effort::table();
@@ -172,8 +167,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     for table in &tables {
         text += &markdown(table);
     }
-    fs::write(directory.join("speed.md"), &text)?;
-    picture::draw(&directory.join("speed.svg"), &[&tables[0], &tables[1]])?;
-    print!("{text}");
+    let (page, svg) = (folder.join("speed.md"), folder.join("speed.svg"));
+    fs::write(&page, &text).map_err(|error| Failure::at(&page, error))?;
+    picture::draw(&svg, &[&tables[0], &tables[1]])
+        .map_err(|error| Failure::about("plot", error))?;
+    // Whoever reads it may have gone; the files are there.
+    let _ = std::io::stdout().write_all(text.as_bytes());
     Ok(())
 }

@@ -1,8 +1,6 @@
 //! Importance maps of 1024 × 1024 pixels: memcpy, ours, and ways to draw from a discrete distribution;
 //! the cost of changing a map; what probed bounds lose.
 
-mod common;
-
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -10,16 +8,17 @@ use glam::Vec2;
 use twelvefold::{
     Amount, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Probed, Sampling,
 };
+use twelvefold_lab::{contenders, maps};
 
 fn points(criterion: &mut Criterion) {
-    for map in &common::maps::all() {
-        common::groups::bench(criterion, map.name, &common::image(map));
+    for map in &maps::all() {
+        twelvefold_benches::bench(criterion, map.name, &contenders::image(map));
     }
 }
 
 fn probed(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("probed");
-    for map in &common::maps::all() {
+    for map in &maps::all() {
         let map_name = map.name;
         let map = &map.importance;
         let placement = Placement::new(map.domain(), 1);
@@ -44,7 +43,7 @@ fn probed(criterion: &mut Criterion) {
 
 fn update(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("update of 1024 × 1024 pixels");
-    let [map, ..] = common::maps::all();
+    let [map, ..] = maps::all();
     let pixels = map.importance.pixels().to_vec();
     let bytes: Vec<u8> = pixels.iter().map(|pixel| (pixel * 100.0) as u8).collect();
     let mut map: ImageMap = map.importance;
@@ -68,7 +67,7 @@ fn update(criterion: &mut Criterion) {
 
 criterion_group! {
     name = benches;
-    config = common::groups::criterion();
+    config = twelvefold_benches::criterion();
     targets = points, probed, update
 }
 criterion_main!(benches);

@@ -3,14 +3,14 @@
 use twelvefold::{ImageMap, InvalidPixels};
 
 /// Pixels a side.
-pub(crate) const SIDE: usize = 1024;
+pub const SIDE: usize = 1024;
 
 /// A map and what it is called.
-pub(crate) struct Map {
+pub struct Map {
     /// As the table shows it.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
     /// Ready to sample.
-    pub(crate) importance: ImageMap,
+    pub importance: ImageMap,
 }
 
 impl Map {
@@ -24,7 +24,7 @@ impl Map {
     }
 
     /// The largest pixel over the mean.
-    pub(crate) fn contrast(&self) -> f64 {
+    pub fn contrast(&self) -> f64 {
         let largest = self.importance.pixels().iter().copied().fold(0.0, f32::max);
         f64::from(largest) / self.importance.mean()
     }
@@ -37,7 +37,7 @@ fn noise(i: usize) -> f32 {
 }
 
 /// All maps. The sun of the last is 3,000 times the mean, ten texels wide.
-pub(crate) fn all() -> [Map; 4] {
+pub fn all() -> [Map; 4] {
     [
         Map::new("smooth", |x, y, _| 0.2 + (x * (1.0 - x) * 3.0) * (0.3 + y * y)),
         Map::new("textured", |x, y, i| (0.1 + x) * noise(i) * (1.2 - y)),

@@ -20,7 +20,7 @@ pub const BASE_LEVEL: usize = 9;
 /// A place under a root `a`, at the centre of one of its tiles of level [`BASE_LEVEL`]. Positions are
 /// relative to it, in edges of that level.
 #[derive(Clone, Debug)]
-pub struct Ground<'a> {
+pub struct Place<'a> {
     rules: &'a Rules,
     /// The place in edges of each level: exact, because λ is a unit of the ring.
     origins: Vec<Cyclotomic>,
@@ -72,7 +72,7 @@ pub struct Descend {
     pub centre: bool,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> Place<'a> {
     /// A random place, such that everything within `reach` of it lies under the root.
     ///
     /// # Errors

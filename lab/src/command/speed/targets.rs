@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use twelvefold::{InvalidPixels, PixelData, PixelView};
 
-use crate::{Table, common};
+use twelvefold_lab::maps;
+
+use super::Table;
 
 const MILLION: usize = 1 << 20;
 
@@ -49,7 +51,7 @@ pub(crate) fn table(tables: &[Table]) -> String {
             table.at("alias", 4096) / ours(table, 4096),
         );
     }
-    if cfg!(feature = "parallel") {
+    {
         let maps = [("uniform", uniform), ("smooth map", smooth), ("textured map", textured)];
         for (name, table) in maps {
             for n in [MILLION, 16 * MILLION] {
@@ -119,7 +121,7 @@ pub(crate) fn table(tables: &[Table]) -> String {
 
 /// Time of replacing all pixels, checks and copy included, over the time of copying them.
 fn update() -> f64 {
-    let [smooth, ..] = common::maps::all();
+    let [smooth, ..] = maps::all();
     let pixels = smooth.importance.pixels().to_vec();
     let mut map = smooth.importance;
     let mut copy = pixels.clone();

@@ -5,13 +5,13 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::Vec2;
 
-use super::Contender;
+use twelvefold_lab::contenders::Contender;
 
 /// Numbers of points.
 const COUNTS: [usize; 4] = [1 << 6, 1 << 12, 1 << 16, 1 << 20];
 
 /// Few and short samples: there are many benches.
-pub(crate) fn criterion() -> Criterion {
+pub fn criterion() -> Criterion {
     Criterion::default()
         .sample_size(10)
         .warm_up_time(Duration::from_millis(200))
@@ -19,7 +19,7 @@ pub(crate) fn criterion() -> Criterion {
 }
 
 /// A group for each number of points; each contender's count is checked first.
-pub(crate) fn bench(criterion: &mut Criterion, title: &str, contenders: &[Contender<'_>]) {
+pub fn bench(criterion: &mut Criterion, title: &str, contenders: &[Contender<'_>]) {
     for n in COUNTS {
         let mut group = criterion.benchmark_group(format!("{title}/{n}"));
         group.throughput(Throughput::Elements(n as u64));

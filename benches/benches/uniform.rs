@@ -1,16 +1,15 @@
 //! Uniform density: memcpy, ours at each baked depth, sequences, Bridson.
 
-mod common;
-
 use criterion::{Criterion, criterion_group, criterion_main};
+use twelvefold_lab::contenders;
 
 fn points(criterion: &mut Criterion) {
-    common::groups::bench(criterion, "uniform", &common::uniform());
+    twelvefold_benches::bench(criterion, "uniform", &contenders::uniform());
 }
 
 criterion_group! {
     name = benches;
-    config = common::groups::criterion();
+    config = twelvefold_benches::criterion();
     targets = points
 }
 criterion_main!(benches);

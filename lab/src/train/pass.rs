@@ -5,10 +5,10 @@ use rayon::prelude::*;
 
 use super::field::{spacing, threshold_of_phase};
 use super::force::{Law, Points, READS, Sum};
-use super::ground::{Ground, Region, density};
 use super::image::Image;
-use super::motif;
-use super::patch::Ramp;
+use super::place::{Place, Region, density};
+use super::procedural;
+use super::ramp::Ramp;
 use super::site::sites;
 use super::table::Table;
 use crate::random::Random;
@@ -79,7 +79,7 @@ pub fn pass(
     Ok(())
 }
 
-/// Trains a rough layer on procedural images (see [`motif`]) at phases spread over a level. Points read
+/// Trains a rough layer on procedural images (see [`procedural`]) at phases spread over a level. Points read
 /// `smooth` and `rough` mixed by the detail around them; only `rough` learns.
 ///
 /// # Errors
@@ -111,15 +111,15 @@ fn image_patch(
     number: usize,
     random: &mut Random,
 ) -> Result<Points, OutOfRange> {
-    let tau = super::report::phase(number, images.patches);
-    let values = motif::image(random);
-    let image = Image::accepting(values, motif::SIDE, images.points, tau, images.acceptance);
+    let tau = super::evaluate::phase(number, images.patches);
+    let values = procedural::image(random);
+    let image = Image::accepting(values, procedural::SIDE, images.points, tau, images.acceptance);
     let Some(field) = image else {
         return Err(OutOfRange);
     };
     let half = field.half_extent();
     let margin = DVec2::splat(6.0 * spacing(threshold_of_phase(tau)));
-    let ground = Ground::random(rules, half.length(), random)?;
+    let ground = Place::random(rules, half.length(), random)?;
     let sites = sites(&ground, &field, Region::Rectangle(half))?;
     let mut points = Points::new(
         &sites,
@@ -191,7 +191,7 @@ fn patch(
     let spacing = spacing(threshold);
     let radius = libm::sqrt(count / (core::f64::consts::PI * density(threshold)));
     let reach = radius + 4.0 * spacing;
-    let ground = Ground::random(rules, reach, random)?;
+    let ground = Place::random(rules, reach, random)?;
     let direction = |random: &mut Random| {
         let (s, c) = libm::sincos(core::f64::consts::TAU * random.unit());
         DVec2::new(c, s)

@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::force::Law;
+use super::pass::{self, ImagePass, Pass, Stage};
 use super::table::Table;
-use super::train::{self, ImagePass, Pass, Stage};
 use crate::random::Random;
 use twelvefold::bake::displacement::{DisplacementError, Displacements};
 use twelvefold::importance::StippleMap;
@@ -216,7 +216,7 @@ impl Recipe {
                 None => zeros,
             };
             for pass in &phase.passes {
-                train::pass(rules, &mut table, pass, next_seed(), progress)?;
+                pass::pass(rules, &mut table, pass, next_seed(), progress)?;
             }
             smooth = Some(table);
         }
@@ -226,7 +226,7 @@ impl Recipe {
             Some((grid, passes)) => {
                 let mut table = smooth.resampled(rules, grid.zeros());
                 for pass in passes {
-                    train::image_pass(rules, &smooth, &mut table, pass, next_seed(), progress)?;
+                    pass::image_pass(rules, &smooth, &mut table, pass, next_seed(), progress)?;
                 }
                 Some(table.quantized(1)?)
             }

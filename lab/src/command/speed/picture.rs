@@ -5,7 +5,7 @@ use std::path::Path;
 
 use plotters::prelude::*;
 
-use crate::Table;
+use super::Table;
 
 /// Those of ten kinds that can be told apart, without the red of ours.
 const COLOURS: [RGBColor; 9] = [
@@ -25,7 +25,7 @@ pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>>
     let root = SVGBackend::new(path, (1200, 520)).into_drawing_area();
     root.fill(&WHITE)?;
     for (area, table) in root.split_evenly((1, tables.len())).iter().zip(tables) {
-        let times = |row: &crate::Row| -> Vec<(f64, f64)> {
+        let times = |row: &super::Row| -> Vec<(f64, f64)> {
             let points = table.counts.iter().zip(&row.nanoseconds);
             let timed = points.filter(|(_, nanoseconds)| !nanoseconds.is_nan());
             timed.map(|(n, nanoseconds)| (*n as f64, *n as f64 * nanoseconds / 1e9)).collect()

@@ -4,8 +4,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::field::{Constant, Field, spacing, threshold_of_phase};
-use super::ground::{Ground, Region};
 use super::image::Image;
+use super::place::{Place, Region};
 use super::site::sites;
 use crate::measure::fidelity::{self, Fidelity, Importance};
 use crate::measure::{Evenness, Window, evenness};
@@ -29,7 +29,7 @@ pub fn uniform_window(
     let side = libm::sqrt(count) * spacing(field.0);
     // Neighbours within 4 spacings, and 4 edges from which points may move in.
     let radius = side * core::f64::consts::FRAC_1_SQRT_2 + 4.0 * spacing(field.0) + 4.0;
-    let ground = Ground::random(rules, radius, random)?;
+    let ground = Place::random(rules, radius, random)?;
     let (s, c) = libm::sincos(random.unit() * core::f64::consts::TAU);
     let points = sites(&ground, &field, Region::Disc(radius))?
         .iter()
@@ -73,7 +73,7 @@ pub fn image_points<I: twelvefold::Importance + Sync>(
     let margin =
         DVec2::splat(16.0 * spacing(image.threshold(DVec2::ZERO).max(threshold_of_phase(1.0))));
     let half = image.half_extent() + margin;
-    let ground = Ground::random(rules, half.length(), random)?;
+    let ground = Place::random(rules, half.length(), random)?;
     Ok(sites(&ground, image, Region::Rectangle(half))?
         .iter()
         .map(|site| table.map_or(site.centre, |table| site.settled(table, image)))

@@ -1,0 +1,184 @@
+//! Where the dots go: a sampling of the picture, refined unless it must stream.
+
+use std::fmt;
+
+use glam::DVec2;
+use twelvefold::estimate::{ExactError, exactly};
+use twelvefold::refine::{ITERATIONS, RefineError, Refiner};
+use twelvefold::{
+    Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Placement, Sample, Sampling,
+    SamplingError, StippleMap,
+};
+use twelvefold_files::picture::Picture;
+
+use crate::args::Centers;
+
+/// From this many dots on, they are drawn as they come, unless refinement is asked for: a list of them all,
+/// and what refining needs beside it, would take a hundred bytes a dot.
+pub(crate) const STREAMED: f64 = 2_000_000.0;
+
+/// What is wanted of the dots.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wish {
+    pub(crate) count: Count,
+    pub(crate) centers: Centers,
+    pub(crate) seed: u64,
+    /// Iterations.
+    pub(crate) refine: usize,
+}
+
+/// A number of dots.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Count {
+    About(f64),
+    Exactly(usize),
+}
+
+impl Count {
+    pub(crate) fn number(self) -> f64 {
+        match self {
+            Self::About(count) => count,
+            Self::Exactly(count) => count as f64,
+        }
+    }
+}
+
+/// The iterations for so many dots, if nobody says.
+pub(crate) fn default_iterations(count: f64) -> usize {
+    if count < STREAMED { ITERATIONS } else { 0 }
+}
+
+/// Why there are no dots, or no more of them.
+#[derive(Debug)]
+pub(crate) enum DotsError<E> {
+    Map(MapError),
+    Sampling(SamplingError),
+    Exact(ExactError),
+    Refine(RefineError),
+    /// There is no memory for a list of so many dots.
+    Memory(usize),
+    /// Whoever takes the dots failed.
+    Taker(E),
+}
+
+impl<E: fmt::Display> fmt::Display for DotsError<E> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(error) => error.fmt(out),
+            Self::Sampling(error) => error.fmt(out),
+            Self::Exact(error) => error.fmt(out),
+            Self::Refine(error) => error.fmt(out),
+            Self::Memory(count) => {
+                write!(
+                    out,
+                    "there is no memory for {} MiB of dots",
+                    (count * size_of::<DVec2>()) >> 20
+                )
+            }
+            Self::Taker(error) => error.fmt(out),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
+
+/// Hands every dot of a picture, in pixels, to `take`; says after each iteration of refinement that it is
+/// done.
+///
+/// # Errors
+/// [`DotsError`], and what `take` fails with.
+pub(crate) fn place<E>(
+    picture: &Picture,
+    wish: Wish,
+    iteration: impl FnMut(),
+    mut take: impl FnMut(DVec2) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    if wish.refine == 0 {
+        return raw(picture, wish, take);
+    }
+    let mut dots = Vec::new();
+    raw(picture, wish, |dot| {
+        let room = dots.try_reserve(1);
+        dots.push(dot);
+        room.map_err(|_| dots.len())
+    })
+    .map_err(|error| match error {
+        DotsError::Taker(count) => DotsError::Memory(count),
+        DotsError::Map(error) => DotsError::Map(error),
+        DotsError::Sampling(error) => DotsError::Sampling(error),
+        DotsError::Exact(error) => DotsError::Exact(error),
+        DotsError::Refine(error) => DotsError::Refine(error),
+        DotsError::Memory(count) => DotsError::Memory(count),
+    })?;
+    refined(picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
+}
+
+/// Refines dots where they are.
+fn refined(
+    picture: &Picture,
+    dots: &mut [DVec2],
+    iterations: usize,
+    mut iteration: impl FnMut(),
+) -> Result<(), RefineError> {
+    let mut refiner = Refiner::new(picture.width, picture.height, &picture.importance, dots)?;
+    for _ in 0..iterations {
+        refiner.step();
+        iteration();
+    }
+    refiner.write(dots)
+}
+
+/// The dots as the sampling gives them.
+fn raw<E>(
+    picture: &Picture,
+    wish: Wish,
+    mut take: impl FnMut(DVec2) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    let Picture { width, height, ref importance, .. } = *picture;
+    let pixels = || {
+        let mut copy = Vec::new();
+        copy.try_reserve_exact(importance.len())
+            .map_err(|_| DotsError::Memory(importance.len()))?;
+        copy.extend_from_slice(importance);
+        Ok(copy)
+    };
+    let invalid = InvalidPixels::Reject;
+    match (wish.count, wish.centers) {
+        (Count::Exactly(count), _) => {
+            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let dots =
+                exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
+            dots.iter().try_for_each(|dot| take(dot.position).map_err(DotsError::Taker))
+        }
+        (Count::About(count), Centers::Fixed) => {
+            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(count));
+            stream(&sampling.map_err(DotsError::Sampling)?, take)
+        }
+        (Count::About(count), Centers::Relaxed) => {
+            let map = StippleMap::new(width, height, pixels()?, invalid, count)
+                .map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(count))
+                .and_then(Sampling::relaxed)
+                .map_err(DotsError::Sampling)?;
+            stream(&sampling, take)
+        }
+    }
+}
+
+/// Every point of a sampling.
+fn stream<E>(
+    sampling: &Sampling<'_, impl Importance>,
+    mut take: impl FnMut(DVec2) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    // In 64 bits because 32 would be too few in a picture with sides of very different length.
+    for point in sampling.points().map_err(DotsError::Sampling)? {
+        let Sample::<DVec2> { position, .. } = point.map_err(DotsError::Sampling)?;
+        take(position).map_err(DotsError::Taker)?;
+    }
+    Ok(())
+}
