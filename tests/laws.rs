@@ -8,8 +8,8 @@ use common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Disc, Domain, Function, ImageMap, InvalidPixels, Placement, Sampling, Tables,
-    bake,
+    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Placement,
+    Sampling, StippleMap, Tables, bake,
 };
 
 /// Sizes, pixels of several characters, and a seed.
@@ -223,4 +223,80 @@ fn relaxed_points_of_constant_importance_are_unbiased() {
         println!("relaxed, constant: z = {z:.2}");
         assert!(z.abs() < 4.0, "z = {z}");
     }
+}
+
+/// Where relaxed points lie, in double and in single precision.
+fn relaxed<I: Importance>(importance: &I, domain: Domain, seed: u64, count: f64) -> Vec<DVec2> {
+    let placement = Placement::new(domain, seed);
+    let sampling = Sampling::new(&placement, importance, Amount::Points(count)).unwrap();
+    let sampling = sampling.relaxed().unwrap();
+    let single = sampling.points::<Vec2>().unwrap().map(|point| point.unwrap().position.as_dvec2());
+    let double = sampling.points::<DVec2>().unwrap().map(|point| point.unwrap().position);
+    single.chain(double).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn no_relaxed_point_lies_where_the_importance_is_0(
+        seed: u64,
+        (width, height) in (1usize..60, 1usize..60),
+        coarse in 1usize..9,
+        ink in prop_oneof![Just(0.03), Just(0.3), Just(0.8)],
+        count in 10.0..1500.0f64,
+    ) {
+        let at = |x: usize, y: usize| noise(x / coarse + (seed as u16) as usize, y / coarse);
+        let pixels: Vec<f32> = (0..width * height)
+            .map(|i| at(i % width, i / width))
+            .map(|v| if f64::from(v) < ink { 0.2 + v } else { 0.0 })
+            .collect();
+        let map = ImageMap::new(width, height, pixels.clone(), InvalidPixels::Reject).unwrap();
+        prop_assume!(map.mean() > 0.0);
+        let stipple = StippleMap::new(width, height, pixels, InvalidPixels::Reject, count).unwrap();
+        let integral = map.mean() * map.domain().area();
+        let function = Function::new(|at| map.value(at), |_: &Disc| 1.2).with_integral(integral);
+        let domain = map.domain();
+        for points in [
+            relaxed(&map, domain, seed, count),
+            relaxed(&stipple, domain, seed, count),
+            relaxed(&function, domain, seed, count),
+        ] {
+            for point in points {
+                prop_assert!(map.value(point) > 0.0, "{}", point);
+            }
+        }
+    }
+}
+
+#[test]
+fn relaxed_points_along_an_edge_keep_their_distance_and_their_number() {
+    let side = 200;
+    let inside = |x: f64, y: f64| x * x + y * y < 8100.0;
+    let middle = |i: usize| i as f64 + 0.5 - 100.0;
+    let pixels: Vec<f32> = (0..side * side)
+        .map(|i| f32::from(u8::from(inside(middle(i % side), middle(i / side)))))
+        .collect();
+    let area: f64 = pixels.iter().map(|v| f64::from(*v)).sum();
+    let (spacing, seeds) = (3.0, 6);
+    let count = area / (spacing * spacing);
+    let map = StippleMap::new(side, side, pixels, InvalidPixels::Reject, count).unwrap();
+    let (mut total, mut near) = (0, 0);
+    for seed in 0..seeds {
+        let placement = Placement::new(map.domain(), seed);
+        let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
+        let points = points(&sampling.relaxed().unwrap()).unwrap();
+        total += points.len();
+        for (i, (_, a)) in points.iter().enumerate() {
+            for (_, b) in &points[..i] {
+                let distance = a.distance(*b) / spacing;
+                assert!(distance >= 0.2, "{seed}: {a} {b}");
+                near += usize::from(distance < 0.5);
+            }
+        }
+    }
+    // A point that is held at the edge knows nothing of its neighbours: some few come close.
+    assert!(near * 2000 <= total, "{near} of {total}");
+    let bias = total as f64 / (count * seeds as f64) - 1.0;
+    assert!(bias.abs() < 0.003, "{bias}");
 }

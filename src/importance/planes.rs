@@ -301,3 +301,76 @@ impl Spread {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix64;
+    use proptest::prelude::*;
+
+    fn planes(image: &[f32], width: usize, count: f64) -> Planes {
+        let mean = sum(image) / image.len() as f64;
+        let mean_spacing = libm::sqrt(image.len() as f64 / count);
+        let spacing_of_one = mean_spacing * libm::sqrt(mean);
+        let largest = 1.5 * mean_spacing;
+        Planes::new(
+            image,
+            width,
+            &Scales { spacing_of_one, mean_spacing, largest, acceptance: 0.8 },
+        )
+    }
+
+    fn sum(pixels: &[f32]) -> f64 {
+        pixels.iter().map(|v| f64::from(*v)).sum()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn acceptance_keeps_the_sum_and_every_pixel_of_0(
+            seed: u64,
+            (width, height) in (1usize..40, 1usize..40),
+            white in prop_oneof![Just(0.0), Just(0.5), Just(0.97)],
+            count in 1.0..2000.0f64,
+        ) {
+            let mut random = SplitMix64::new(seed);
+            let image: Vec<f32> = (0..width * height)
+                .map(|_| if random.unit() < white { 0.0 } else { random.unit() as f32 })
+                .collect();
+            prop_assume!(sum(&image) > 0.0);
+            let acceptance = planes(&image, width, count).acceptance;
+            let (wanted, given) = (sum(&image), sum(&acceptance));
+            prop_assert!((given / wanted - 1.0).abs() < 1e-6, "{given} {wanted}");
+            for (pixel, accepted) in image.iter().zip(&acceptance) {
+                prop_assert!(*accepted >= 0.0 && (*pixel > 0.0 || *accepted == 0.0));
+            }
+        }
+    }
+
+    /// A dark disc in a gray square on white: what each is given.
+    #[test]
+    fn parts_keep_what_they_ask_for() {
+        let side = 160;
+        let tone = |i: usize| {
+            let (x, y) = ((i % side) as f64 - 79.5, (i / side) as f64 - 79.5);
+            match (x * x + y * y < 1225.0, x.abs().max(y.abs()) < 60.0) {
+                (true, _) => 0.92f32,
+                (false, true) => 0.37,
+                _ => 0.0,
+            }
+        };
+        let image: Vec<f32> = (0..side * side).map(tone).collect();
+        for count in [300.0, 1000.0, 4000.0] {
+            let acceptance = planes(&image, side, count).acceptance;
+            for part in [0.92, 0.37] {
+                let of = |pixels: &[f32]| -> f64 {
+                    let pixels = pixels.iter().zip(&image).filter(|(_, tone)| **tone == part);
+                    pixels.map(|(v, _)| f64::from(*v)).sum()
+                };
+                let bias = of(&acceptance) / of(&image) - 1.0;
+                assert!(bias.abs() < 0.003, "{count} {part}: {bias}");
+            }
+        }
+    }
+}
