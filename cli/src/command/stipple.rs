@@ -28,7 +28,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let style = style(options, &picture, wish.count);
     let mut progress = Progress::new(wish.count.number(), options.quiet);
     let to = Target { output: &mut output, style: &style, progress: &mut progress };
-    let drawn = draw_as(kind, &picture, wish, to);
+    let drawn = draw_as(kind, picture, wish, to);
     let (points, time) = progress.finish();
     match drawn {
         Ok(()) => {}
@@ -210,7 +210,7 @@ struct Target<'a> {
 /// Draws a picture's dots as a file of this kind.
 fn draw_as(
     kind: Kind,
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     Target { output, style, progress }: Target<'_>,
 ) -> Result<(), DotsError<DrawError>> {
@@ -228,7 +228,7 @@ fn draw_as(
 
 /// Puts every dot into `drawing`.
 fn draw(
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     mut drawing: impl Drawing,
     progress: &mut Progress,

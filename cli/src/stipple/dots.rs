@@ -88,7 +88,7 @@ impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
 /// # Errors
 /// [`DotsError`], and what `take` fails with.
 pub(crate) fn place<E>(
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
     mut take: impl FnMut(DVec2) -> Result<(), E>,
@@ -97,7 +97,7 @@ pub(crate) fn place<E>(
         return raw(picture, wish, take);
     }
     let mut dots = Vec::new();
-    raw(picture, wish, |dot| {
+    raw(copy(&picture)?, wish, |dot| {
         let room = dots.try_reserve(1);
         dots.push(dot);
         room.map_err(|_| dots.len())
@@ -110,7 +110,7 @@ pub(crate) fn place<E>(
         DotsError::Refine(error) => DotsError::Refine(error),
         DotsError::Memory(count) => DotsError::Memory(count),
     })?;
-    refined(picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
     dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
 }
 
@@ -129,37 +129,38 @@ fn refined(
     refiner.write(dots)
 }
 
+/// A picture for a map, which keeps its pixels.
+fn copy<E>(picture: &Picture) -> Result<Picture, DotsError<E>> {
+    let mut importance = Vec::new();
+    let pixels = picture.importance.len();
+    importance.try_reserve_exact(pixels).map_err(|_| DotsError::Memory(pixels))?;
+    importance.extend_from_slice(&picture.importance);
+    Ok(Picture { importance, warnings: Vec::new(), ..*picture })
+}
+
 /// The dots as the sampling gives them.
 fn raw<E>(
-    picture: &Picture,
+    Picture { width, height, importance, .. }: Picture,
     wish: Wish,
     mut take: impl FnMut(DVec2) -> Result<(), E>,
 ) -> Result<(), DotsError<E>> {
-    let Picture { width, height, ref importance, .. } = *picture;
-    let pixels = || {
-        let mut copy = Vec::new();
-        copy.try_reserve_exact(importance.len())
-            .map_err(|_| DotsError::Memory(importance.len()))?;
-        copy.extend_from_slice(importance);
-        Ok(copy)
-    };
     let invalid = InvalidPixels::Reject;
     match (wish.count, wish.centers) {
         (Count::Exactly(count), _) => {
-            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let dots =
                 exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
             dots.iter().try_for_each(|dot| take(dot.position).map_err(DotsError::Taker))
         }
         (Count::About(count), Centers::Fixed) => {
-            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count));
             stream(&sampling.map_err(DotsError::Sampling)?, take)
         }
         (Count::About(count), Centers::Relaxed) => {
-            let map = StippleMap::new(width, height, pixels()?, invalid, count)
+            let map = StippleMap::new(width, height, importance, invalid, count)
                 .map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count))
