@@ -28,15 +28,12 @@ pub struct Warp<'m> {
     sums: SumPyramid,
 }
 
-/// The greatest number below 1.
-const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-
 impl<'m> Warp<'m> {
     /// The warp to a map's density; `None` if the map is 0 everywhere.
     #[must_use]
     pub fn new(map: &'m ImageMap) -> Option<Self> {
-        let sums = SumPyramid::new(map);
-        let sum = sums.sum(sums.top());
+        let sums = SumPyramid::new(map.pixels(), map.size());
+        let sum = sums.total();
         (sum > 0.0 && sum.is_finite()).then_some(Self { map, sums })
     }
 
@@ -69,21 +66,7 @@ impl<'m> Warp<'m> {
 
     /// The pixel to which a point goes, and where in it.
     fn pixel(&self, at: DVec2) -> (usize, usize, DVec2) {
-        let inside = |c: f64| if c > 0.0 { c.min(BELOW_ONE) } else { 0.0 };
-        let mut at = DVec2::new(inside(at.x), inside(at.y));
-        let mut cell = self.sums.top();
-        while cell.level > 0 {
-            let quarters = cell.quarters();
-            let [a, b, c, d] = quarters.map(|quarter| self.sums.sum(quarter));
-            // A part without importance has exactly the fraction 0 or 1, which no coordinate picks.
-            let upper = (a + b) / ((a + b) + (c + d));
-            let (row, y) = split(at.y, upper);
-            let [left, right] = if row == 0 { [a, b] } else { [c, d] };
-            let (column, x) = split(at.x, left / (left + right));
-            at = DVec2::new(x, y);
-            cell = quarters[2 * row + column];
-        }
-        (cell.x, cell.y, at)
+        self.sums.find(self.map.pixels(), self.sums.top(), at)
     }
 
     /// The weighted point to which a point of [0, 1)² goes, as one of `n`. The estimate from n points
@@ -120,14 +103,5 @@ impl<'m> Warp<'m> {
         let placement = Placement::aligned(Domain::unit(), seed, n as f64)?;
         let uniform = exactly(&placement, &Constant::ONE, n, limits)?;
         Ok(uniform.iter().map(|point| self.weighted(point.position, n, point.rank)).collect())
-    }
-}
-
-/// Which part of [0, `fraction`) ∪ [`fraction`, 1) holds c, and where in it, in [0, 1).
-fn split(c: f64, fraction: f64) -> (usize, f64) {
-    if c < fraction {
-        (0, (c / fraction).min(BELOW_ONE))
-    } else {
-        (1, ((c - fraction) / (1.0 - fraction)).min(BELOW_ONE))
     }
 }
