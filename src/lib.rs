@@ -71,6 +71,7 @@ mod effort;
 mod environment;
 pub mod estimate;
 pub mod importance;
+pub mod light;
 #[cfg(test)]
 mod oracle;
 #[cfg(feature = "parallel")]
