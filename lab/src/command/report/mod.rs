@@ -1,6 +1,5 @@
 //! `twelvefold report`: what a sample costs and how much error it leaves, against what else is in use.
 
-mod classic;
 mod curves;
 mod samplers;
 mod scenes;

@@ -9,7 +9,7 @@ use twelvefold::{
     Sampling,
 };
 
-use super::classic::{Alias, InverseCdf, Random, halton, plastic, sobol};
+use twelvefold_lab::classic::{Alias, InverseCdf, Random, halton, plastic, sobol};
 
 /// A set of points, each with the area that it stands for.
 pub(crate) type Set = Vec<(DVec2, f64)>;

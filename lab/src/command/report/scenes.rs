@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use twelvefold::{EnvironmentError, EnvironmentMap, InvalidPixels};
 
-use super::classic::Random;
+use twelvefold_lab::classic::Random;
 
 /// A function of the unit square and its integral.
 pub(crate) type Instance = (Box<dyn Fn(DVec2) -> f64>, f64);

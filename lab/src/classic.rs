@@ -4,10 +4,13 @@ use glam::DVec2;
 use twelvefold::ImageMap;
 
 /// Uniform numbers, SplitMix64.
-pub(crate) struct Random(u64);
+#[derive(Clone, Debug)]
+pub struct Random(u64);
 
 impl Random {
-    pub(crate) fn new(seed: u64) -> Self {
+    /// The numbers of a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x5851_f42d_4c95_7f2d)
     }
 
@@ -19,18 +22,19 @@ impl Random {
     }
 
     /// In [0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// In [0, 1)².
-    pub(crate) fn point(&mut self) -> DVec2 {
+    pub fn point(&mut self) -> DVec2 {
         DVec2::new(self.unit(), self.unit())
     }
 }
 
 /// The Halton sequence in bases 2 and 3.
-pub(crate) fn halton(i: usize) -> DVec2 {
+#[must_use]
+pub fn halton(i: usize) -> DVec2 {
     let two = (i as u64).reverse_bits() >> 11;
     let (mut rest, mut three, mut place) = (i, 0.0, 1.0);
     while rest > 0 {
@@ -42,20 +46,23 @@ pub(crate) fn halton(i: usize) -> DVec2 {
 }
 
 /// The R2 sequence (M. Roberts): multiples of 1/g and 1/g², g³ = g + 1.
-pub(crate) fn plastic(i: usize) -> DVec2 {
+#[must_use]
+pub fn plastic(i: usize) -> DVec2 {
     const G: f64 = 1.324_717_957_244_746;
     (i as f64 * DVec2::new(1.0 / G, 1.0 / (G * G))).fract()
 }
 
 /// The Owen-scrambled Sobol sequence, up to 65,536 points.
-pub(crate) fn sobol(i: usize, seed: u64) -> DVec2 {
+#[must_use]
+pub fn sobol(i: usize, seed: u64) -> DVec2 {
     let coordinate = |dimension| sobol_burley::sample(i as u32, dimension, seed as u32);
     DVec2::new(coordinate(0).into(), coordinate(1).into())
 }
 
 /// Inversion of the marginal of the rows, then of the row (as in pbrt's piecewise-constant
 /// distributions).
-pub(crate) struct InverseCdf {
+#[derive(Clone, Debug)]
+pub struct InverseCdf {
     width: usize,
     /// Sums of the rows before each.
     rows: Vec<f64>,
@@ -64,7 +71,9 @@ pub(crate) struct InverseCdf {
 }
 
 impl InverseCdf {
-    pub(crate) fn new(map: &ImageMap) -> Self {
+    /// Of a map's pixels.
+    #[must_use]
+    pub fn new(map: &ImageMap) -> Self {
         let (width, height) = map.size();
         let mut columns = Vec::with_capacity((width + 1) * height);
         let mut rows = vec![0.0];
@@ -83,7 +92,8 @@ impl InverseCdf {
     }
 
     /// The position, in pixels, to which a point of [0, 1)² goes.
-    pub(crate) fn position(&self, at: DVec2) -> DVec2 {
+    #[must_use]
+    pub fn position(&self, at: DVec2) -> DVec2 {
         let (row, y) = invert(&self.rows, at.y);
         let stride = self.width + 1;
         let (column, x) = invert(&self.columns[row * stride..][..stride], at.x);
@@ -101,13 +111,16 @@ fn invert(sums: &[f64], u: f64) -> (usize, f64) {
 }
 
 /// Vose's alias table: a pixel with probability in proportion to its value, in constant time.
-pub(crate) struct Alias {
+#[derive(Clone, Debug)]
+pub struct Alias {
     keep: Vec<f64>,
     other: Vec<u32>,
 }
 
 impl Alias {
-    pub(crate) fn new(values: &[f32]) -> Self {
+    /// Of these values, which are not all 0.
+    #[must_use]
+    pub fn new(values: &[f32]) -> Self {
         let total: f64 = values.iter().map(|value| f64::from(*value)).sum();
         let scale = values.len() as f64 / total;
         let mut keep: Vec<f64> = values.iter().map(|value| f64::from(*value) * scale).collect();
@@ -126,7 +139,9 @@ impl Alias {
         Self { keep, other }
     }
 
-    pub(crate) fn draw(&self, random: &mut Random) -> usize {
+    /// The index of one of the values.
+    #[must_use]
+    pub fn draw(&self, random: &mut Random) -> usize {
         let at = random.unit() * self.keep.len() as f64;
         let i = at as usize;
         if at - (i as f64) < self.keep[i] { i } else { self.other[i] as usize }
