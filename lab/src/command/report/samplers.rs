@@ -108,7 +108,7 @@ fn shifted(points: impl ExactSizeIterator<Item = DVec2>, seed: u64) -> Set {
 }
 
 /// The samplers of constant importance.
-pub(crate) const UNIFORM: [Uniform; 14] = [
+pub(crate) const UNIFORM: [Uniform; 15] = [
     Uniform {
         name: "ours, 1/density",
         make: |n, seed| {
@@ -167,6 +167,13 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
             Some(filled(&sampling, n)?.into_iter().map(|p| (p, weight)).collect())
         },
     },
+    Uniform {
+        name: "ours, seamless set",
+        make: |n, seed| {
+            let points = twelvefold::estimate::SeamlessSet::new(n, Limits::default()).ok()?;
+            Some(equal(points.points(seed)))
+        },
+    },
     Uniform { name: "Halton, shifted", make: |n, seed| Some(shifted((0..n).map(halton), seed)) },
     Uniform {
         name: "Hammersley, shifted",
@@ -209,7 +216,7 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
 ];
 
 /// The samplers of a map.
-pub(crate) const FOLLOWING: [Following; 15] = [
+pub(crate) const FOLLOWING: [Following; 16] = [
     Following {
         name: "ours, 1/density",
         make: |target, n, seed| {
@@ -259,6 +266,14 @@ pub(crate) const FOLLOWING: [Following; 15] = [
     Following {
         name: "ours, warped level",
         make: |target, n, seed| target.warp.level(n, seed, Limits::default()).ok().map(set),
+    },
+    Following {
+        name: "ours, Sobol + warp",
+        make: |target, n, seed| {
+            let points = twelvefold::light::Sobol::new(seed);
+            let warped = |i| target.warp.weighted(DVec2::from_array(points.point(i)), n, i.into());
+            Some(set((0..n as u32).map(warped).collect()))
+        },
     },
     Following {
         name: "Owen Sobol + warp",
