@@ -23,8 +23,8 @@ const MOST_CELLS: usize = 2048;
 /// to the product of light and cosine that diffuse surfaces reflect: on an overcast sky no sample
 /// in two is lost below the horizon.
 ///
-/// A [turn](Self::turn) to another normal costs some 20 ns a cell, 40 µs at most, and a sample about a
-/// third more than [`LightSampler::sample`]: worth it for a plane, a facet, or some hundred samples of
+/// A [turn](Self::turn) to another normal costs 10 to 70 µs, as much as 50 to 200 samples, and a sample
+/// little more than [`LightSampler::sample`]: worth it for a plane, a facet, or some hundred samples of
 /// one normal, not for one sample a normal.
 ///
 /// ```
