@@ -30,9 +30,10 @@ use crate::tiling::cyclotomic::SQRT_3;
 /// Every seed gives the same set, shifted at random and turned or mirrored: each point alone is
 /// uniform, so that estimates with weights 1/n are unbiased; and there is no border, so that
 /// periodic integrands (longitude is periodic) meet no edge. Warped to a map by
-/// [`Warp`](super::Warp) it leaves about as much error as Owen-scrambled Sobol points
-/// (0.8 to 1.4 times on smooth skies, 0.7 to 1.2 behind occluders); but no beginning of it is a good set. Best where n is a multiple of 4: one to three
-/// points that lack show, as up to 2.5 times the error of the next multiple.
+/// [`Warp`](super::Warp) it leaves about as much error as Owen-scrambled Sobol points (at 2^k points 0.8
+/// to 1.7 times on smooth skies, 0.7 to 1.2 behind occluders; less at other numbers); but no beginning
+/// of it is a good set. Best where n is a multiple of 4: one to three points that lack show, as up to 2.5
+/// times the error of the next multiple.
 ///
 /// ```
 /// use twelvefold::estimate::SeamlessSet;
