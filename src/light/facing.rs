@@ -114,7 +114,7 @@ impl<'s, M: Borrow<EnvironmentMap>> FacingSampler<'s, M> {
     /// As [`LightSampler::sample`]. Dark, with density 0, after a [`turn`](Self::turn) that failed.
     #[must_use]
     pub fn sample(&self, at: [f64; 2]) -> EnvironmentSample {
-        if !(self.sums.total() > 0.0) {
+        if self.sums.total() <= 0.0 {
             return EnvironmentSample { direction: DVec3::Z, pdf: 0.0, radiance: [0.0; 3] };
         }
         let at = DVec2::from_array(at);

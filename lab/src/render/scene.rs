@@ -101,7 +101,7 @@ fn hit(view: DVec3) -> Option<Hit> {
             Surface { diffuse: DVec3::new(0.02, 0.02, 0.03), glossy: 0.8, exponent: 400.0 };
         return Some(Hit { position, normal: position - CENTER, surface });
     }
-    if !(to_plane < 40.0) {
+    if to_plane >= 40.0 {
         return None;
     }
     let position = EYE + to_plane * view;
