@@ -68,6 +68,7 @@ mod emit;
 mod error;
 pub mod estimate;
 pub mod importance;
+pub mod light;
 mod placement;
 mod position;
 #[doc(hidden)]
