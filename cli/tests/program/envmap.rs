@@ -143,6 +143,38 @@ fn a_spot_lies_where_the_frame_puts_it() {
 }
 
 #[test]
+fn a_spot_in_a_file_lies_right_of_the_centre_as_seen_from_inside() {
+    // 100 × 50 pixels of black but for two in row 25: blue in column 50, red in column 60.
+    let map = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/right.hdr");
+    let angle = |column: f64| (std::f64::consts::TAU * (column - 50.0) / 100.0).sin_cos();
+    let height = (std::f64::consts::PI * 25.5 / 50.0).cos();
+    // Right of +x is -y where z is up and coordinates are right-handed; right of +z is -x where y is.
+    let expected = [
+        ("blender", (|(sin, cos), up| [cos, -sin, up]) as fn((f64, f64), f64) -> [f64; 3]),
+        ("openexr", |(sin, cos), up| [-sin, up, cos]),
+    ];
+    for (frame, place) in expected {
+        let lights = table(&run(&["envmap", map, "-n", "64", "-o", "-", "--frame", frame]));
+        assert_eq!(lights.len(), 64);
+        let mut reds = 0;
+        for [x, y, z, _, red, green, blue] in lights {
+            let column = match [red, green, blue] {
+                [1.0, 0.0, 0.0] => 60.5,
+                [0.0, 0.0, 1.0] => 50.5,
+                other => panic!("{other:?} is in no pixel"),
+            };
+            reds += usize::from(red > 0.0);
+            // Half a pixel is 1.8°, both ways.
+            for (found, at) in [x, y, z].into_iter().zip(place(angle(column), height)) {
+                assert!((found - at).abs() < 0.035, "{frame}: ({x}, {y}, {z}), {column}");
+            }
+        }
+        // As their luminances, 0.2126 and 0.0722.
+        assert!((46..=50).contains(&reds), "{reds}");
+    }
+}
+
+#[test]
 fn every_kind_of_component_that_is_no_radiance_has_its_option() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.exr");
