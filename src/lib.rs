@@ -69,6 +69,7 @@ mod error;
 pub mod estimate;
 pub mod export;
 pub mod importance;
+pub mod light;
 mod placement;
 mod position;
 #[doc(hidden)]

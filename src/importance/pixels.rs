@@ -16,20 +16,6 @@ pub enum InvalidPixels {
     ZeroAll,
 }
 
-impl InvalidPixels {
-    /// The value as it counts, or `None` if this policy does not admit it.
-    pub(crate) fn admit(self, value: f32) -> Option<f32> {
-        if (0.0..f32::INFINITY).contains(&value) {
-            return Some(value);
-        }
-        match self {
-            Self::ZeroAll => Some(0.0),
-            Self::ZeroNegative if value < 0.0 && value.is_finite() => Some(0.0),
-            _ => None,
-        }
-    }
-}
-
 /// Why pixels are no importance map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

@@ -102,7 +102,7 @@ impl Flow {
         while rounds < ROUNDS && left > enough && left > 0.0 {
             let along = self.apply();
             // not above 0, not a number: nothing more to gain
-            if !(along > 0.0) {
+            if along.is_nan() || along <= 0.0 {
                 break;
             }
             let step = (left / along) as f32;
