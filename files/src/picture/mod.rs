@@ -161,7 +161,7 @@ impl From<io::Error> for PictureError {
 /// Reads the photograph at `path`, upright, as importance.
 ///
 /// Transparent pixels are laid over white. In float files, negative values count as zero and values
-/// above one as white. Takes at most [`limits::MEMORY_LIMIT`] bytes for pixels.
+/// above one as white. Takes at most 1 GiB for pixels.
 ///
 /// # Errors
 /// [`PictureError`].
