@@ -11,8 +11,8 @@
 
 use alloc::vec::Vec;
 
-use super::BakeError;
 use super::class::Classes;
+use super::error::BakeError;
 use crate::tiling::cyclotomic::Surd;
 use crate::tiling::{Cyclotomic, Rules, Tile, TileType};
 

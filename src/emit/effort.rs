@@ -49,7 +49,7 @@ impl<I: Importance> Sampling<'_, I> {
     /// points it makes. Costs a walk.
     ///
     /// # Errors
-    /// As [`visit`](Self::visit).
+    /// As [`fill`](Self::fill).
     pub fn effort(&self) -> Result<Effort, SamplingError> {
         Effort::of(self)
     }

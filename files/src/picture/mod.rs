@@ -198,7 +198,7 @@ struct Wanted<'a> {
 /// Reads the photograph at `path`, or for `-` from standard input, upright and in shape, as importance.
 ///
 /// Transparent pixels deserve no dots. In float files, negative values count as zero and values
-/// above one as white. Takes at most [`limits::MEMORY_LIMIT`] bytes for pixels.
+/// above one as white. Takes at most 1 GiB for pixels.
 ///
 /// # Errors
 /// [`PictureError`].
