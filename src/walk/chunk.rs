@@ -60,8 +60,8 @@ impl<S: Scalar> Chunk<S> {
         if self.packed { self.entry[i].into() } else { self.first + i }
     }
 
-    /// Takes the batch's entries from `start` on, as many as fit and are certain alike, and marks the
-    /// points among them. Returns the next entry.
+    /// Takes the batch's entries from `start` on, as many as fit and are all sure or all not, and
+    /// marks the points among them. Returns the next entry.
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
@@ -70,19 +70,19 @@ impl<S: Scalar> Chunk<S> {
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        let certain = start < batch.certain;
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         if batch.inside {
-            if certain {
+            if sure {
                 self.keep[..self.len].fill(1);
             }
         } else {
             self.mark_inside::<I, P>(walk);
-            if !certain {
+            if !sure {
                 self.pack();
             }
         }
-        if !certain {
+        if !sure {
             self.read_values(sampling);
             self.mark_accepted(sampling, batch)?;
         }

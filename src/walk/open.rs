@@ -56,7 +56,8 @@ impl<K: Mode> OpenTile<K> {
         &mut self,
         sampling: &Sampling<'_, I>,
         clip: &Clip,
-        (node, ancestry): (&Node, &K),
+        node: &Node,
+        ancestry: &K,
         node_limit: u64,
         node_inside: bool,
     ) -> Result<(), SamplingError> {

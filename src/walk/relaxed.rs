@@ -62,12 +62,13 @@ impl<S: Scalar> Chunk<S> {
         &mut self,
         walk: &Context<'_, '_, I, S>,
         displacements: &DisplacementTable<'_>,
-        (batch, ancestry): (&Candidates, &Ancestry),
+        batch: &Candidates,
+        ancestry: &Ancestry,
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        // Certain ones too read the importance: their phase depends on it.
-        let certain = start < batch.certain;
+        // Sure ones too read the importance: their phase depends on it.
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
         let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
@@ -82,7 +83,7 @@ impl<S: Scalar> Chunk<S> {
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
         }
-        if certain {
+        if sure {
             self.keep[..self.len].fill(1);
         } else {
             self.mark_accepted(sampling, batch)?;
@@ -90,7 +91,7 @@ impl<S: Scalar> Chunk<S> {
         if !batch.inside {
             self.reject_far(walk);
         }
-        match certain && batch.inside {
+        match sure && batch.inside {
             true => self.list_entries(),
             false => self.pack_with_values(),
         }
