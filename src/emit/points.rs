@@ -115,6 +115,11 @@ impl<'a, I: Importance> Sampling<'a, I> {
     ///     let sample = sample?;
     ///     assert!(sample.position.x < 1.0 && sample.position.y < 1.0);
     /// }
+    /// // Plain arrays for those whose vectors are not glam's; the same numbers.
+    /// let arrays = sampling.points::<[f32; 2]>()?;
+    /// assert!(arrays.zip(sampling.points::<Vec2>()?).all(|(a, b)| {
+    ///     matches!((a, b), (Ok(a), Ok(b)) if a.position == b.position.to_array())
+    /// }));
     /// # Ok::<(), twelvefold::SamplingError>(())
     /// ```
     ///

@@ -10,7 +10,7 @@ use crate::importance::Importance;
 use crate::position::Position;
 use crate::sampling::Sampling;
 
-/// Parts a thread: enough that a thread with more work than expected holds up no other.
+/// Parts a thread: enough that a thread with more work than expected does not hold up the others.
 const PARTS_PER_THREAD: usize = 4;
 
 /// Buffers of the parts of a sampling, kept from frame to frame: memory for the points, which grows to what

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-/// What to do with pixels that are no importance.
+/// What to do with pixels that cannot be an importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum InvalidPixels {
@@ -31,7 +31,7 @@ impl InvalidPixels {
     }
 }
 
-/// Why pixels are no importance map.
+/// Why pixels are not an importance map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapError {
@@ -49,7 +49,7 @@ pub enum MapError {
         /// The number of pixels.
         found: usize,
     },
-    /// The first pixel, row by row, that is no importance.
+    /// The first pixel, row by row, that cannot be an importance.
     InvalidPixel {
         /// Its column, from 0.
         x: usize,

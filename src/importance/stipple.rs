@@ -297,7 +297,8 @@ mod tests {
             assert_eq!(values[i], map.value(at));
             assert_eq!((local[i], detail[i]), (map.local(at, 0.5), map.detail(at)));
             let settled = map.constrain(DVec2::new(20.0, 15.0), at, needed[i]);
-            assert_eq!(unconstrained[i] == 1, settled == at);
+            // Those about which it is asked may stay, too.
+            assert!(unconstrained[i] == 0 || settled == at);
             moved += usize::from(settled != at);
         }
         assert!((20..180).contains(&moved), "{moved}");

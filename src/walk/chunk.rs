@@ -1,6 +1,19 @@
 //! Chunks: up to a few hundred candidates in arrays, one pass each for positions, bounds of the
 //! domain, importance and comparison. Each pass is a loop without branches over arrays, which
 //! compilers turn into vector instructions.
+//!
+//! ```text
+//! entries   start ………………… sure ………………… end      a batch: sure entries need no look at the importance
+//!           └─ chunk ─┘└─ chunk ─┘└─ chunk ─┘      at most 256 entries each, never some of both kinds
+//!
+//! load           x, y of the entries             always; candidate i is entry `first` + i
+//! mark_inside    keep = in domain and clip       only across the clip's border
+//! pack           candidates kept to the front    from here on candidate i is `entry[i]`
+//! read_values    values = importance at x, y     only entries that are not sure
+//! mark_accepted  keep = rank < limit(value)      the same
+//! ```
+//!
+//! Whoever receives the chunk takes the candidates with `keep` 1.
 
 use core::ops::Range;
 

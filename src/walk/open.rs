@@ -107,7 +107,7 @@ impl<K: Mode> OpenTile<K> {
                 continue;
             }
             let region = Disc { centre: corner + DVec2::new(x[i], y[i]), radius };
-            // No child has more than its parent, even where a bound that is no promise says so: the
+            // No child has more than its parent, even where a bound that need not hold says so: the
             // disc above is made for the parent's limit.
             let limit = sampling.rank_limit_of_bound(*bound, &region)?.min(node_limit);
             let bit = 1 << digit;

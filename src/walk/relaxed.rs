@@ -57,6 +57,9 @@ struct Displacer<'w, 'a, I> {
 impl<S: Scalar> Chunk<S> {
     /// As [`select`](Self::select), for relaxed points: takes the batch's entries from `start` on, as
     /// many as fit, and keeps the points among them, where they are moved to.
+    //
+    // load → values → (keep the accepted) → (drop what is too far from the clip) → pack with values → move
+    // → (keep what has landed inside). What is in brackets is for entries that are not sure or not inside.
     #[inline(always)]
     pub(crate) fn select_relaxed<I: Importance, P: Position<Scalar = S>>(
         &mut self,
@@ -135,8 +138,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
         (corner + DVec2::new(x.to_f64(), y.to_f64())).clamp(self.low, self.high)
     }
 
-    /// The phase that a point reads, at whose level's parents there is one tile in `per_tile` ranks, and
-    /// the contrast: its centre is nearest to `at`, where the importance is `value`.
+    /// The phase that a point reads, and the detail. `at` is the place of the domain nearest to its
+    /// centre, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
@@ -327,7 +330,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 let ancestry = ancestry.child(node, entry, &child);
                 (ClassFormula::of_centre(tables, &ancestry, &child, below - 1), (0, 0))
             }
-            // A bound that is no promise may have hidden that a point is deeper than any here.
+            // A bound that need not hold may have hidden that a point is deeper than any here.
             None => (
                 ClassFormula::of_entries(ancestry, node, below.min(2)),
                 block.rank_coefficients(entry),

@@ -4,6 +4,18 @@
 //! not the centre's own is N_m + r. A tile's centre is tested with its parent's batch; so a subtree
 //! whose bound in rank units is at most N_m + r needs no visit. This is sharper than the paper's κ
 //! (its equation 8) and takes no logarithm.
+//!
+//! ```text
+//! level m      tile: limit = ranks that its bound admits
+//!                │ limit ≤ N_m + r                      nothing below it: passed over
+//!                │ few entries left to test             one batch: the block's entries below limit
+//!                │ otherwise: opened                    one batch: the children's centres
+//! level m + 1    ├─ child 0 ─ …                         then each child, digit 0 first
+//!                ├─ child 1 ─ …
+//! ```
+//!
+//! `advance` goes to the next tile (a child of the deepest open tile, or a tile of the frontier, whose own
+//! centre is a batch by itself) and visits it, until there is a batch to hand out.
 
 use super::candidates::Candidates;
 use super::chunk::Chunk;

@@ -9,7 +9,7 @@ use crate::importance::pixels::{MapError, filled};
 const RUN: usize = 256;
 
 /// Levels 1, 2, … of maxima and minima over 2×2, 4×4, … pixels, down to one texel. Level 0, the
-/// pixels, unconstrained with its owner. Odd sizes round up: the last texel of a level covers what is left.
+/// pixels, stays with its owner. Odd sizes round up: the last texel of a level covers what is left.
 #[derive(Clone, Debug)]
 pub(in crate::importance) struct Extremes {
     greatest: Vec<f32>,
