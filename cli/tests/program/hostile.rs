@@ -47,7 +47,7 @@ fn more_dots_than_memory_is_one_line_and_no_file() {
     let (name, bytes) = specimens().swap_remove(0);
     let photo = written(&folder, name, &bytes);
     // The list of the result does not fit; then that does, but not the candidates.
-    for (kilobytes, count) in [("1200000", "100000000"), ("300000", "5000000")] {
+    for (kilobytes, count) in [("350000", "10000000"), ("300000", "5000000")] {
         let target = folder.path().join("dots.csv");
         let output = std::process::Command::new("sh")
             .args(["-c", "ulimit -v $0 && exec \"$@\"", kilobytes])
