@@ -1,7 +1,7 @@
 //! Well-spread points with a density you control, from tables baked at build time.
 //!
 //! twelvefold places points by Ostromoukhov's dodecagonal tiling: four tile types subdivide into each
-//! other for ever; every tile gives one point and a rank; a point is accepted where the importance
+//! other endlessly; every tile gives one point and a rank; a point is accepted where the importance
 //! reaches its rank. The result is a point set that is evenly spread at any density, follows an
 //! importance map, and is the same, bit for bit, on every machine.
 //!

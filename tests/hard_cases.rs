@@ -3,6 +3,8 @@
 mod common;
 
 use common::{map, noise, points};
+use std::collections::HashSet;
+
 use glam::{DVec2, Vec2};
 use twelvefold::{
     Amount, Constant, Disc, Domain, DomainError, Function, ImageMap, Importance, InvalidPixels,
@@ -208,6 +210,51 @@ fn extreme_shapes_give_their_count() {
             }
         }
     }
+}
+
+#[test]
+fn a_domain_too_thin_for_single_precision_is_an_error_and_others_lose_no_points() {
+    let (mut refused, mut equal) = (0, 0);
+    for case in 0..120u64 {
+        // Steps that no two of the three share a period of.
+        let part = |step: f64| (case as f64 * step).fract();
+        let aspect = 10f64.powf(9.0 * part(0.618_034));
+        let scale = 10f64.powf(20.0 * part(0.754_878) - 10.0);
+        let size = match case % 2 {
+            0 => DVec2::new(scale, scale * aspect),
+            _ => DVec2::new(scale * aspect, scale),
+        };
+        let count = 10f64.powf(1.0 + 2.5 * part(0.569_840));
+        let placement = Placement::new(Domain::new(DVec2::ZERO, size).unwrap(), case);
+        let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
+        let single: Result<Vec<_>, _> =
+            sampling.points::<Vec2>().map(|points| points.map(Result::unwrap).collect());
+        let Ok(single) = single else {
+            assert_eq!(single, Err(SamplingError::Precision));
+            assert!(aspect > 43_000.0, "{aspect}");
+            refused += 1;
+            continue;
+        };
+        assert!(aspect < 44_000.0, "{aspect}");
+        let double = points(&sampling).unwrap();
+        let doubt = 3.0 * f64::from(f32::EPSILON) * size.length();
+        // Only what rounding can carry over a side is in one set and not in the other.
+        let near = |at: DVec2| at.min(size - at).min_element() <= 1.01 * doubt;
+        let in_single: HashSet<_> = single.iter().map(|sample| sample.rank).collect();
+        let in_double: HashSet<_> = double.iter().map(|(rank, _)| *rank).collect();
+        let lost = double.iter().filter(|(rank, _)| !in_single.contains(rank));
+        let gained = single.iter().filter(|sample| !in_double.contains(&sample.rank));
+        assert!(lost.clone().all(|(_, at)| near(*at)), "{size}");
+        assert!(gained.clone().all(|sample| near(sample.position.as_dvec2())), "{size}");
+        let differing = lost.count() + gained.count();
+        assert!(differing <= 3 + double.len() / 32, "{differing} of {} in {size}", double.len());
+        equal += usize::from(differing == 0);
+        // Too few are in doubt for one to be met.
+        if count * doubt < 1e-4 * size.min_element() {
+            assert_eq!(differing, 0, "{size}");
+        }
+    }
+    assert!(refused > 30 && equal > 30, "{refused} {equal}");
 }
 
 #[test]

@@ -147,7 +147,7 @@ impl EnvironmentMap {
         let cosines: Vec<f64> = (0..=height).map(|y| border_cosine(y, height)).collect();
         let at_equator = TAU / width as f64 * (PI / height as f64);
         let mut total = 0.0;
-        let mut importance = Vec::with_capacity(expected);
+        let mut importance = super::pixels::with_room(expected)?;
         for (row, borders) in pixels.chunks_exact(width).zip(cosines.windows(2)) {
             let solid_angle = TAU / width as f64 * (borders[0] - borders[1]);
             for pixel in row {

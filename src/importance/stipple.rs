@@ -95,7 +95,7 @@ impl StippleMap {
             largest: LARGEST_SPACING * mean_spacing,
             acceptance,
         };
-        let Planes { acceptance, phase, detail } = Planes::new(&importance, width, &scales);
+        let Planes { acceptance, phase, detail } = Planes::new(&importance, width, &scales)?;
         let acceptance = ImageMap::new(width, height, acceptance, InvalidPixels::Reject)?;
         Ok(Self { acceptance: BilinearMap::new(acceptance), phase, detail, scales })
     }

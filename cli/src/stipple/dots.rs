@@ -98,9 +98,9 @@ pub(crate) fn place<E>(
     }
     let mut dots = Vec::new();
     raw(copy(&picture)?, wish, |dot| {
-        let room = dots.try_reserve(1);
+        dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
         dots.push(dot);
-        room.map_err(|_| dots.len())
+        Ok(())
     })
     .map_err(|error| match error {
         DotsError::Taker(count) => DotsError::Memory(count),

@@ -41,6 +41,30 @@ fn specimens() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn more_dots_than_memory_is_one_line_and_no_file() {
+    let folder = TempDir::new().unwrap();
+    let (name, bytes) = specimens().swap_remove(0);
+    let photo = written(&folder, name, &bytes);
+    // The list of the result does not fit; then that does, but not the candidates.
+    for (kilobytes, count) in [("350000", "10000000"), ("300000", "5000000")] {
+        let target = folder.path().join("dots.csv");
+        let output = std::process::Command::new("sh")
+            .args(["-c", "ulimit -v $0 && exec \"$@\"", kilobytes])
+            .arg(env!("CARGO_BIN_EXE_twelvefold"))
+            .arg("stipple")
+            .arg(&photo)
+            .args(["--exact", count, "--quiet", "-o"])
+            .arg(&target)
+            .output()
+            .unwrap();
+        let complaint = complaint_about(photo.to_str().unwrap(), &output);
+        assert!(complaint.contains("bytes of memory"), "{complaint}");
+        assert_eq!(crate::names(folder.path()), [name]);
+    }
+}
+
+#[test]
 fn a_file_that_ends_early_is_an_error_wherever_it_ends() {
     let folder = TempDir::new().unwrap();
     for (name, whole) in specimens() {
