@@ -1,10 +1,8 @@
 //! Laws that hold for every importance, seed and amount, as properties.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{map, noise, points};
+use crate::common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
