@@ -1,7 +1,11 @@
 //! Shared by the modules: points as a list, and seeded maps.
 
+use std::sync::OnceLock;
+
 use glam::DVec2;
-use twelvefold::{EnvironmentMap, ImageMap, Importance, InvalidPixels, Sampling, SamplingError};
+use twelvefold::{
+    EnvironmentMap, ImageMap, Importance, InvalidPixels, Sampling, SamplingError, Tables, bake,
+};
 
 /// All points as (rank, position), in the order of their ranks.
 pub(crate) fn points<I: Importance>(
@@ -48,4 +52,16 @@ pub(crate) fn environment() -> EnvironmentMap {
         .map(|i| [component(i), component(i + 1), component(i + 2)])
         .collect();
     EnvironmentMap::new(64, 32, pixels, InvalidPixels::ZeroNegative).unwrap()
+}
+
+/// Tables of the built-in rules at every depth that can be baked. Made once: they are most of the time
+/// of a property that asks for them.
+pub(crate) fn every_depth() -> &'static [Tables<'static>] {
+    static TABLES: OnceLock<Vec<Tables<'static>>> = OnceLock::new();
+    TABLES.get_or_init(|| {
+        let rules = Tables::built_in().rules();
+        let bake =
+            |depth| Tables::from_bytes(bake::bake(&rules, depth, None).unwrap().leak()).unwrap();
+        (1..=bake::MAX_DEPTH).map(bake).collect()
+    })
 }

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use crate::common::{map, noise, points};
+use crate::common::{every_depth, map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Disc, Domain, Function, ImageMap, InvalidPixels, Placement, Sampling, Tables,
-    bake,
+    Amount, Constant, Disc, Domain, Function, ImageMap, InvalidPixels, Placement, Sampling,
 };
 
 /// Sizes, pixels of several characters, and a seed.
@@ -158,10 +157,8 @@ proptest! {
         let filled = sampling.fill(&mut buffer).unwrap();
         prop_assert!(filled.complete && filled.written == iterated.len());
         prop_assert!(iterated.iter().zip(&buffer).all(|(sample, at)| sample.position == *at));
-        for depth in 1..=bake::MAX_DEPTH {
-            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
-            let placement =
-                Placement::new_in(image.domain(), seed, Tables::from_bytes(&bytes).unwrap());
+        for tables in every_depth() {
+            let placement = Placement::new_in(image.domain(), seed, *tables);
             let sampling = Sampling::new(&placement, &image, Amount::Points(amount)).unwrap();
             let mut sorted = iterated.clone();
             sorted.sort_by_key(|sample| sample.rank);
