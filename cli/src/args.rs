@@ -94,14 +94,12 @@ pub(crate) struct MeasureOptions {
 
 /// Reads a rectangle.
 fn window(text: &str) -> Result<Window, String> {
-    let numbers: Vec<f64> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
-    match numbers[..] {
-        [x, y, width, height]
-            if numbers.iter().all(|n| n.is_finite()) && width > 0.0 && height > 0.0 =>
-        {
-            Ok(Window::new(DVec2::new(x, y), DVec2::new(width, height)))
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, width, height]) => {
+            Window::new(DVec2::new(x, y), DVec2::new(width, height)).map_err(|e| e.to_string())
         }
-        _ => Err("not four finite numbers X,Y,WIDTH,HEIGHT with a size above zero".to_owned()),
+        _ => Err("not four numbers X,Y,WIDTH,HEIGHT".to_owned()),
     }
 }
 

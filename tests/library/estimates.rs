@@ -1,8 +1,6 @@
 //! Estimates: unbiased where they say so, exact counts, and how much each weight gains.
 
-mod common;
-
-use common::{environment, map, noise, photograph};
+use crate::common::{environment, map, noise, photograph};
 use glam::{DVec2, DVec3};
 use twelvefold::estimate::{
     ExactError, Warp, Weighted, Weighting, exactly, normalise, post_stratify,

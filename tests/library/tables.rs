@@ -12,13 +12,13 @@ fn rules() -> Rules {
 }
 
 fn displacements() -> Displacements {
-    Displacements::from_bytes(include_bytes!("../tables/relaxed.bin")).unwrap()
+    Displacements::from_bytes(include_bytes!("../../tables/relaxed.bin")).unwrap()
 }
 
 #[test]
 fn the_built_in_tables_are_the_baked_rules() {
     let built_in = Tables::built_in();
-    let digits = Digits::parse(include_str!("../tables/digits.txt")).unwrap();
+    let digits = Digits::parse(include_str!("../../tables/digits.txt")).unwrap();
     assert_eq!(built_in.rules(), Rules::new(&digits).unwrap());
     let displacements = displacements();
     let baked = bake::bake(&rules(), built_in.depth(), Some(&displacements)).unwrap();
@@ -31,7 +31,7 @@ fn the_built_in_tables_are_the_baked_rules() {
 fn the_default_depth_has_the_recorded_hash() {
     let bytes = bake::bake(&rules(), bake::DEFAULT_DEPTH, Some(&displacements())).unwrap();
     let hash: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    let recorded = include_str!("../tables/baked.sha256");
+    let recorded = include_str!("../../tables/baked.sha256");
     assert_eq!(recorded.split_whitespace().next(), Some(hash.as_str()));
 }
 
@@ -139,7 +139,7 @@ proptest! {
 
 #[test]
 fn a_digit_given_twice_or_to_a_wrong_type_is_named_with_its_line() {
-    let text = include_str!("../tables/digits.txt");
+    let text = include_str!("../../tables/digits.txt");
     let line = text.lines().position(|l| l.starts_with("c:")).unwrap() + 1;
     let twice = text.replace("5 D 6 B 7 C", "5 D 6 B 7 B");
     let repeated = DigitsError::RepeatedDigit { line, parent: TileType::C, digit: 11 };

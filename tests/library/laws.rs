@@ -1,15 +1,13 @@
 //! Laws that hold for every importance, seed and amount, as properties.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{map, noise, points};
+use crate::common::{every_depth, map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
     Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Placement,
-    Sampling, StippleMap, Tables, bake,
+    Sampling, StippleMap,
 };
 
 /// Sizes, pixels of several characters, and a seed.
@@ -160,10 +158,8 @@ proptest! {
         let filled = sampling.fill(&mut buffer).unwrap();
         prop_assert!(filled.complete && filled.written == iterated.len());
         prop_assert!(iterated.iter().zip(&buffer).all(|(sample, at)| sample.position == *at));
-        for depth in 1..=bake::MAX_DEPTH {
-            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
-            let placement =
-                Placement::new_in(image.domain(), seed, Tables::from_bytes(&bytes).unwrap());
+        for tables in every_depth() {
+            let placement = Placement::new_in(image.domain(), seed, *tables);
             let sampling = Sampling::new(&placement, &image, Amount::Points(amount)).unwrap();
             let mut sorted = iterated.clone();
             sorted.sort_by_key(|sample| sample.rank);

@@ -3,9 +3,11 @@
 
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
+
+use crate::common::every_depth;
 use twelvefold::{
     Amount, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Placement, Position,
-    Probed, Sample, Sampling, SamplingError, Scalar, Tables, bake,
+    Probed, Sample, Sampling, SamplingError, Scalar,
 };
 
 /// Rank and the bits of the coordinates.
@@ -164,10 +166,8 @@ proptest! {
     fn baked_depth_changes_nothing(seed: u64, size in (1usize..30, 1usize..30), count in 1.0..5000.0f64) {
         let map = map(size.0, size.1, 30.0, seed);
         let mut expected = None;
-        for depth in 1..=bake::MAX_DEPTH {
-            let bytes = bake::bake(&Tables::built_in().rules(), depth, None).unwrap();
-            let tables = Tables::from_bytes(&bytes).unwrap();
-            let placement = Placement::new_in(map.domain(), seed, tables);
+        for tables in every_depth() {
+            let placement = Placement::new_in(map.domain(), seed, *tables);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count)).unwrap();
             let uniform = Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
             let points = (sorted::<Vec2, _>(&sampling), sorted::<Vec2, _>(&uniform));

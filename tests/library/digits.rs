@@ -2,7 +2,7 @@
 
 use twelvefold::tiling::{Digits, DigitsError, Rules, TileType};
 
-const DIGITS: &str = include_str!("../tables/digits.txt");
+const DIGITS: &str = include_str!("../../tables/digits.txt");
 
 /// The parse error after replacing `from`, which must occur, by `to`.
 fn broken(from: &str, to: &str) -> DigitsError {

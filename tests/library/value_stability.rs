@@ -150,7 +150,7 @@ fn points_are_those_of_the_golden_file() {
         describe(&mut lines, &format!("closure-{seed}"), &sampling);
     }
     if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
-        let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/points.txt");
+        let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/library/golden/points.txt");
         return std::fs::write(golden, lines).unwrap();
     }
     let different: Vec<_> =
