@@ -4,6 +4,7 @@
 mod args;
 mod command;
 mod drawing;
+mod order;
 mod stipple;
 
 use std::io::Write as _;
