@@ -14,6 +14,7 @@ mod uncross;
 
 use glam::DVec2;
 
+pub(crate) use near::Grid;
 use tour::Tour;
 
 /// Sorts dots so that the way from the first to the last is short: some 5 % above the shortest closed tour

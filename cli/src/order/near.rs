@@ -25,11 +25,38 @@ impl Grid {
         Self::with_cell(dots, least, size, cell)
     }
 
+    /// A grid for looking at all dots within `reach` of a place.
+    pub(crate) fn with_cells_of(dots: &[DVec2], reach: f64) -> Self {
+        let least = dots.iter().fold(DVec2::INFINITY, |least, dot| least.min(*dot));
+        let most = dots.iter().fold(DVec2::NEG_INFINITY, |most, dot| most.max(*dot));
+        let size = (most - least).max(DVec2::ZERO);
+        // No more cells than a few for each dot, however short the reach.
+        let widest = (size.x * size.y / (4 * dots.len().max(1)) as f64).sqrt();
+        let longest = size.max_element() / (4 * dots.len().max(1)) as f64;
+        Self::with_cell(dots, least, size, reach.max(widest).max(longest))
+    }
+
+    /// Visits every dot in the cell of `at` and in those around it.
+    pub(crate) fn around(&self, at: DVec2, mut visit: impl FnMut(u32)) {
+        let (column, row) = self.cell_of(at);
+        for y in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {
+            for x in column.saturating_sub(1)..=(column + 1).min(self.columns - 1) {
+                self.members(x, y).iter().for_each(|&index| visit(index));
+            }
+        }
+    }
+
     fn with_cell(dots: &[DVec2], least: DVec2, size: DVec2, cell: f64) -> Self {
         let columns = (size.x / cell) as usize + 1;
         let rows = (size.y / cell) as usize + 1;
-        let mut grid =
-            Self { least, cell, columns, rows, starts: vec![0; columns * rows + 1], members: vec![] };
+        let mut grid = Self {
+            least,
+            cell,
+            columns,
+            rows,
+            starts: vec![0; columns * rows + 1],
+            members: vec![],
+        };
         let homes: Vec<u32> = dots.iter().map(|&dot| grid.home(dot) as u32).collect();
         for &home in &homes {
             grid.starts[home as usize + 1] += 1;

@@ -17,7 +17,8 @@ fn sorted(dots: &[DVec2]) -> Vec<[u64; 2]> {
 fn scattered(side: u32) -> Vec<DVec2> {
     let mut state = 1u64;
     let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as f64 / (1u64 << 24) as f64
     };
     (0..side * side)
@@ -44,12 +45,13 @@ fn meet(a: [i64; 2], b: [i64; 2], c: [i64; 2], d: [i64; 2]) -> bool {
 /// Whether the line through dots meets itself anywhere but where one stroke ends and the next begins; looks
 /// at every pair.
 fn meets_itself(dots: &[DVec2]) -> bool {
-    let whole: Vec<[i64; 2]> =
-        dots.iter().map(|dot| [(dot.x * 1e3).round() as i64, (dot.y * 1e3).round() as i64]).collect();
+    let whole: Vec<[i64; 2]> = dots
+        .iter()
+        .map(|dot| [(dot.x * 1e3).round() as i64, (dot.y * 1e3).round() as i64])
+        .collect();
     let edges: Vec<_> = whole.windows(2).map(|pair| (pair[0], pair[1])).collect();
-    (0..edges.len()).any(|i| {
-        (i + 2..edges.len()).any(|j| meet(edges[i].0, edges[i].1, edges[j].0, edges[j].1))
-    })
+    (0..edges.len())
+        .any(|i| (i + 2..edges.len()).any(|j| meet(edges[i].0, edges[i].1, edges[j].0, edges[j].1)))
 }
 
 #[test]
@@ -129,7 +131,14 @@ proptest! {
 #[ignore = "measures: reads x,y lines from /tmp/paperout/in.csv"]
 fn measure_file() {
     let text = std::fs::read_to_string("/tmp/paperout/in.csv").unwrap();
-    let mut dots: Vec<DVec2> = text.lines().skip(1).map(|l| { let (x, y) = l.split_once(',').unwrap(); DVec2::new(x.parse().unwrap(), y.parse().unwrap()) }).collect();
+    let mut dots: Vec<DVec2> = text
+        .lines()
+        .skip(1)
+        .map(|l| {
+            let (x, y) = l.split_once(',').unwrap();
+            DVec2::new(x.parse().unwrap(), y.parse().unwrap())
+        })
+        .collect();
     println!("{} before {}", dots.len(), length(&dots));
     let mut other = dots.clone();
     let t = std::time::Instant::now();

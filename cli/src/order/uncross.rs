@@ -188,7 +188,11 @@ impl Cells {
                     let height = i128::from(q[1] - p[1]).max(1);
                     p[0] + (i128::from(q[0] - p[0]) * y / height) as i64
                 };
-                let ends = if p[1] == q[1] { [p[0], q[0]] } else { [row, row + 1].map(|r| x_at(r * cell)) };
+                let ends = if p[1] == q[1] {
+                    [p[0], q[0]]
+                } else {
+                    [row, row + 1].map(|r| x_at(r * cell))
+                };
                 let first = (ends[0].min(ends[1]) - 1).max(0) / cell;
                 let last = (ends[0].max(ends[1]) + 1) / cell;
                 for column in first..=last {
