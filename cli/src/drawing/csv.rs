@@ -51,10 +51,10 @@ mod tests {
 
     #[test]
     fn coordinates_read_back_to_the_bit() {
-        let dots = [(0.0, 511.99997), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
+        let dots = [(0.0f32, 511.99997f32), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
         let mut bytes = Vec::new();
         let mut csv = Box::new(Csv::new(&mut bytes).unwrap());
-        for (x, y) in dots as [(f32, f32); 3] {
+        for (x, y) in dots {
             csv.dot(DVec2::new(f64::from(x), f64::from(y))).unwrap();
         }
         csv.finish().unwrap();

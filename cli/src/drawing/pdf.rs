@@ -120,8 +120,9 @@ impl<W: Write> Drawing for Pdf<'_, W> {
             }
             Mark::Ring { radii, .. } => {
                 for radius in radii {
-                    if *radius > 0.0 {
-                        self.circle(at, radius * self.steps);
+                    let radius = (radius * self.steps).round();
+                    if radius > 0.0 {
+                        self.circle(at, radius);
                     } else {
                         self.operator(at, &[[0.0; 2]], b"m");
                         self.operator(at, &[[0.0; 2]], b"l");
@@ -190,7 +191,7 @@ mod tests {
         let mut pdf = Box::new(Pdf::new(&mut bytes, &look).unwrap());
         pdf.layer(&Layer::black()).unwrap();
         dots.iter().for_each(|dot| pdf.dot(*dot).unwrap());
-        pdf.finish().unwrap();
+        Drawing::finish(pdf).unwrap();
         let find = |what: &[u8]| bytes.windows(what.len()).position(|part| part == what).unwrap();
         assert!(bytes.starts_with(b"%PDF-") && bytes.ends_with(b"%%EOF"));
         find(b"/MediaBox [0 0 283.46457 226.77165]");

@@ -57,6 +57,7 @@ pub(crate) fn margin(text: &str) -> Result<f64, String> {
 
 /// The number at the start of a text, and the unit that follows it.
 fn split(text: &str) -> (&str, &str) {
+    let text = text.trim();
     let end = text.trim_end_matches(|c: char| c.is_ascii_alphabetic()).len();
     let (number, unit) = text.split_at(end);
     (number.trim(), unit)

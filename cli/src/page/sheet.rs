@@ -183,12 +183,12 @@ mod tests {
         let size = |photograph, page: &Page| {
             Sheet::of_page(photograph, page, dot).unwrap().size.to_array()
         };
-        let wide = DVec2::new(300.0, 200.0);
+        let (wide, tall) = (DVec2::new(300.0, 200.0), DVec2::new(200.0, 300.0));
         assert_eq!(size(wide, &page("a4")), [297.0, 210.0]);
-        assert_eq!(size(wide.yx(), &page("a4")), [210.0, 297.0]);
+        assert_eq!(size(tall, &page("a4")), [210.0, 297.0]);
         assert_eq!(size(wide, &page("210x297")), [210.0, 297.0]);
         let landscape = Page { landscape: true, ..page("210x297") };
-        assert_eq!(size(wide.yx(), &landscape), [297.0, 210.0]);
+        assert_eq!(size(tall, &landscape), [297.0, 210.0]);
     }
 
     #[test]
