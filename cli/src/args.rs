@@ -10,6 +10,10 @@ use twelvefold::light::{Frame, InfiniteRadiance};
 use twelvefold::tiling::TileType;
 use twelvefold_lab::measure::Window;
 
+use crate::drawing::Format;
+use crate::page::length::Length;
+use crate::page::options::PaperOptions;
+
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
 
@@ -308,9 +312,15 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
 
-    /// Where the dots go: a file ending in .svg, .png or .csv, or `-` for CSV on standard output.
+    /// Where the dots go: a file ending in .svg, .png, .pdf, .csv or .npy, or `-` for standard output, as
+    /// CSV unless `--format` says otherwise.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+
+    /// What to write, whatever the name of the output: a drawing, or a list of places, of which `npy` is an
+    /// array of shape (dots, 2) and type float32.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
 
     /// How many dots, at most 50,000,000 [default: a ninth of the sum of all pixels' darkness from 0 to 1,
     /// that is one every 3 pixels where the photograph is black; at least 3,000 where that many fit four
@@ -334,12 +344,13 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// A dot's diameter in pixels of the photograph [default: the one at which the dots' areas add up
-    /// to the whole area where the photograph is black].
+    /// A dot's diameter, or the width of the line, in pixels of the photograph; with `--page` in mm, or in
+    /// inches as in 0.02in [default: the one at which the dots' areas add up to the whole area where the
+    /// photograph is black; of a line, the one at which it covers 0.8 of that].
     ///
-    /// Of no effect on CSV.
-    #[arg(long, value_name = "PIXELS", value_parser = positive)]
-    pub(crate) dot_size: Option<f64>,
+    /// With `--pen` only for `--marks ring`. Of no effect on CSV and NPY.
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) dot_size: Option<Length>,
 
     /// How often the dots are moved to draw the picture better, at most 1000; 10 take about 3 microseconds
     /// a dot. 0 leaves them where the tiling puts them, which needs no memory for them.
@@ -372,15 +383,18 @@ pub(crate) struct StippleOptions {
     #[arg(long)]
     pub(crate) linear: bool,
 
-    /// Size of the SVG or PNG picture, as a multiple of the photograph's; dots grow with it.
+    /// Size of the SVG, PNG or PDF picture, as a multiple of the photograph's; dots grow with it.
     ///
-    /// Of no effect on CSV, whose unit is always the photograph's pixel.
+    /// Of no effect on CSV and NPY, whose unit without `--page` is always the photograph's pixel.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     pub(crate) scale: f64,
 
     /// Say nothing but errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) paper: PaperOptions,
 }
 
 /// What is done about ink that overlaps.

@@ -4,6 +4,8 @@
 mod args;
 mod command;
 mod drawing;
+mod order;
+mod page;
 mod stipple;
 
 use std::io::Write as _;

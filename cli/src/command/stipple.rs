@@ -1,4 +1,7 @@
 //! `twelvefold stipple`: a photograph drawn with equal dots.
+//!
+//! The photograph becomes importance; [`Plan`] settles how many dots there are and how large; they are placed
+//! and refined, kept apart and put in order where a pen draws them, and written one by one.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
@@ -10,48 +13,46 @@ use twelvefold_files::output::{Output, OutputError};
 use twelvefold_files::picture::{self, Levels, Picture, Tone};
 use twelvefold_files::progress::Progress;
 
-use crate::args::{Centers, DotGain, StippleOptions};
-use crate::drawing::{Csv, Drawing, Png, PngError, Style, Svg};
-use crate::stipple::budget::{default_count, default_dot_size};
-use crate::stipple::dots::{self, Count, DotsError, Wish};
+use crate::args::{DotGain, StippleOptions};
+use crate::drawing::{Drawing, DrawingError, Format, Layer};
+use crate::order;
+use crate::page::apart::keep_apart;
+use crate::page::options::Order;
+use crate::page::sheet::STEPS;
+use crate::stipple::dots::{self, Count, DotsError};
 use crate::stipple::gain;
+use crate::stipple::plan::{Plan, streams_unasked};
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
-    let (kind, mut output) = open(options)?;
+    let (format, mut output) = open(options)?;
     let mut picture = read(options)?;
-    let gain = options.dot_gain.unwrap_or(kind.dot_gain());
-    if gain == DotGain::Correct {
-        gain::correct(&mut picture.importance);
-    }
-    let wish = wish(options, picture.total());
-    let style = style(options, &picture, wish.count);
-    let mut progress = Progress::new(wish.count.number(), options.quiet);
-    let to = Target { output: &mut output, style: &style, progress: &mut progress };
-    let drawn = draw_as(kind, picture, wish, to);
+    prepare(&mut picture, options, format);
+    let plan = Plan::new(options, &picture, format)
+        .map_err(|error| Failure::about(error.option(), error))?;
+    let mut progress = Progress::new(plan.wish.count.number(), options.quiet);
+    let drawn = draw(format, picture, &plan, &mut output, &mut progress);
     let (points, time) = progress.finish();
-    match drawn {
-        Ok(()) => {}
-        Err(DotsError::Taker(DrawError::Write(error))) => {
+    let travel = match drawn {
+        Ok(travel) => travel,
+        Err(DotsError::Taker(DrawError::Drawing(DrawingError::Io(error)))) => {
             return finish(options, Err(OutputError::Io(error)));
         }
-        Err(DotsError::Taker(DrawError::Picture(error))) => {
+        Err(DotsError::Taker(DrawError::Drawing(error))) => {
             return Err(Failure::at(&options.output, error));
         }
+        Err(DotsError::Taker(error)) => return Err(Failure::about("--exact", error)),
         Err(error) => return Err(of_photo(options, error)),
-    }
+    };
     finish(options, output.commit())?;
     if !options.quiet {
         let seconds = time.as_secs_f64();
-        let streamed = match (options.refine, wish.refine) {
-            (None, 0) => ", not refined since so many are drawn as they come (see --refine)",
-            _ => "",
-        };
         // Stderr may be closed; the points are written all the same.
         let _ = writeln!(
             io::stderr(),
-            "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second{streamed}",
-            points as f64 / seconds.max(1e-9)
+            "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second{}",
+            points as f64 / seconds.max(1e-9),
+            remarks(options, &plan, points, travel),
         );
     }
     Ok(())
@@ -64,6 +65,20 @@ fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Erro
     } else {
         Failure::at(&options.photo, reason)
     }
+}
+
+/// Opens the output before the photograph is read: a mistake in its name shows at once.
+fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
+    let path = &options.output;
+    if path.as_os_str() == "-" {
+        return Ok((options.format.unwrap_or(Format::Csv), Output::standard()));
+    }
+    let format = options.format.or_else(|| Format::of(path)).ok_or_else(|| {
+        Failure::at(path, "has none of the endings .svg, .png, .pdf, .csv and .npy; see --format")
+    })?;
+    let output =
+        Output::create_from(path, &options.photo).map_err(|error| of_output(path, error))?;
+    Ok((format, output))
 }
 
 /// Reads the photograph, which must not be blank if dots are to be drawn.
@@ -84,45 +99,107 @@ fn read(options: &StippleOptions) -> Result<Picture, Failure> {
     Ok(picture)
 }
 
-/// What the options ask for, of a picture whose importance adds up to `black`.
-fn wish(options: &StippleOptions, black: f64) -> Wish {
-    let count = match (options.exact, options.points) {
-        (Some(count), _) => Count::Exactly(count as usize),
-        (None, Some(count)) => Count::About(count as f64),
-        (None, None) => Count::About(default_count(black)),
-    };
-    let iterations = dots::default_iterations(count.number());
-    Wish {
-        count,
-        centers: options.centers.unwrap_or(Centers::Relaxed),
-        seed: options.seed,
-        refine: options.refine.map_or(iterations, usize::from),
+/// Turns a picture's darkness into how many dots it should have.
+fn prepare(picture: &mut Picture, options: &StippleOptions, format: Format) {
+    let paper = &options.paper;
+    // A pen's dots lie apart, so that none of their ink is lost; a list of points has no ink.
+    let lies_apart = paper.pen.is_some() || format.is_list();
+    let gain = if lies_apart { DotGain::Ignore } else { DotGain::Correct };
+    if paper.line {
+        gain::square(&mut picture.importance);
+    } else if options.dot_gain.unwrap_or(gain) == DotGain::Correct {
+        gain::correct(&mut picture.importance);
     }
 }
 
-fn style(options: &StippleOptions, picture: &Picture, count: Count) -> Style {
-    // Dots in a squared pixel of black.
-    let density = count.number() / picture.total();
-    let photo = &options.photo;
-    let (about, count) = match count {
-        Count::About(count) => ("about ", count),
-        Count::Exactly(count) => ("", count as f64),
-    };
-    Style {
-        width: picture.width,
-        height: picture.height,
-        scale: options.scale,
-        dot_size: options.dot_size.unwrap_or_else(|| default_dot_size(density)),
-        spacing: 1.0 / density.sqrt(),
-        white_on_black: options.invert,
-        linear: options.linear,
-        title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
-        description: format!(
-            "Stippled with {about}{count} dots by twelvefold {}, seed {}",
-            env!("CARGO_PKG_VERSION"),
-            options.seed
-        ),
+/// Draws a picture's dots; returns how far a pen travels between them, where they were put in order for it.
+fn draw(
+    format: Format,
+    picture: Picture,
+    plan: &Plan,
+    output: &mut Output,
+    progress: &mut Progress,
+) -> Result<Option<f64>, DotsError<DrawError>> {
+    let failed = |error: io::Error| DotsError::Taker(DrawError::Drawing(error.into()));
+    let mut drawing = format
+        .begin(output, &plan.look)
+        .map_err(|error| DotsError::Taker(DrawError::Drawing(error)))?;
+    drawing.layer(&layer(plan)).map_err(failed)?;
+    let mut travel = None;
+    if plan.needs_list() {
+        let placed = dots::list(&picture, plan.wish, || {})?;
+        let dots = arranged(placed, plan).map_err(DotsError::Taker)?;
+        travel = Some(dots.windows(2).map(|pair| pair[0].distance(pair[1])).sum());
+        dots.into_iter()
+            .try_for_each(|dot| put(&mut *drawing, dot, progress))
+            .map_err(DotsError::Taker)?;
+    } else {
+        let sheet = &plan.look.sheet;
+        dots::place(
+            picture,
+            plan.wish,
+            || {},
+            |dot| put(&mut *drawing, sheet.place(dot), progress),
+        )?;
     }
+    drawing.finish().map_err(failed)?;
+    Ok(travel)
+}
+
+fn layer(plan: &Plan) -> Layer {
+    Layer { name: plan.ink.svg(), color: plan.ink }
+}
+
+fn put(drawing: &mut dyn Drawing, dot: DVec2, progress: &mut Progress) -> Result<(), DrawError> {
+    progress.point();
+    drawing.dot(dot).map_err(|error| DrawError::Drawing(error.into()))
+}
+
+/// Dots of a photograph as a pen draws them: on the sheet, apart, in order.
+fn arranged(mut dots: Vec<DVec2>, plan: &Plan) -> Result<Vec<DVec2>, DrawError> {
+    let sheet = &plan.look.sheet;
+    for dot in &mut dots {
+        *dot = sheet.place(*dot);
+    }
+    if let Some(least) = plan.apart {
+        let asked = dots.len();
+        keep_apart(&mut dots, least, sheet);
+        if let (Count::Exactly(_), true) = (plan.wish.count, dots.len() < asked) {
+            return Err(DrawError::NotExact { asked, found: dots.len() });
+        }
+    }
+    if plan.line {
+        // Thousandths that lie in the half-open picture.
+        let most = sheet.picture()[1] - 1.0 / STEPS;
+        if !sheet.is_page() {
+            dots.iter_mut().for_each(|dot| *dot = dot.min(most));
+        }
+        order::line(&mut dots);
+    } else if plan.order == Order::Short {
+        order::short(&mut dots);
+    }
+    Ok(dots)
+}
+
+/// What there is to say about a drawing besides its number of dots.
+fn remarks(options: &StippleOptions, plan: &Plan, points: u64, travel: Option<f64>) -> String {
+    let mut remarks = String::new();
+    if streams_unasked(options, &plan.wish) {
+        remarks += ", not refined since so many are drawn as they come (see --refine)";
+    }
+    if let Some(page) = options.paper.page {
+        let size = plan.look.sheet.size;
+        let turned = if size == page.size { "" } else { ", turned" };
+        remarks += &format!(", on {} x {} mm{turned}", size.x, size.y);
+    }
+    if let (Some(pen), None, None) = (options.paper.pen, options.points, options.exact) {
+        remarks += &format!(", which a {} mm pen fills", pen.millimeters());
+    }
+    if let Some(travel) = travel.filter(|_| options.paper.page.is_some() && points > 1) {
+        let what = if plan.line { "a line of" } else { "travel" };
+        remarks += &format!(", {what} {:.1} m", travel / 1e3);
+    }
+    remarks
 }
 
 /// A file that could not be written is an error, unless whoever read it has had enough.
@@ -153,45 +230,6 @@ fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
     })
 }
 
-/// What to write.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Csv,
-    Svg,
-    Png,
-}
-
-impl Kind {
-    /// The kind that the name of a file asks for.
-    fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?;
-        [("csv", Self::Csv), ("svg", Self::Svg), ("png", Self::Png)]
-            .into_iter()
-            .find_map(|(name, kind)| extension.eq_ignore_ascii_case(name).then_some(kind))
-    }
-
-    /// Ink is drawn so that it covers what is dark; a list of points has no ink.
-    fn dot_gain(self) -> DotGain {
-        match self {
-            Self::Csv => DotGain::Ignore,
-            Self::Svg | Self::Png => DotGain::Correct,
-        }
-    }
-}
-
-/// Opens the output before the photograph is read: a mistake in its name shows at once.
-fn open(options: &StippleOptions) -> Result<(Kind, Output), Failure> {
-    let path = &options.output;
-    if path.as_os_str() == "-" {
-        return Ok((Kind::Csv, Output::standard()));
-    }
-    let kind = Kind::of(path)
-        .ok_or_else(|| Failure::at(path, "has none of the endings .svg, .png and .csv"))?;
-    let output =
-        Output::create_from(path, &options.photo).map_err(|error| of_output(path, error))?;
-    Ok((kind, output))
-}
-
 fn of_output(path: &Path, error: OutputError) -> Failure {
     if path.as_os_str() == "-" {
         Failure::about("standard output", error)
@@ -200,70 +238,24 @@ fn of_output(path: &Path, error: OutputError) -> Failure {
     }
 }
 
-/// Where drawn dots go: the file, how they look, and who is told of them.
-struct Target<'a> {
-    output: &'a mut Output,
-    style: &'a Style,
-    progress: &'a mut Progress,
-}
-
-/// Draws a picture's dots as a file of this kind.
-fn draw_as(
-    kind: Kind,
-    picture: Picture,
-    wish: Wish,
-    Target { output, style, progress }: Target<'_>,
-) -> Result<(), DotsError<DrawError>> {
-    let write = |error| DotsError::Taker(DrawError::Write(error));
-    match kind {
-        Kind::Csv => draw(picture, wish, Csv::new(output).map_err(write)?, progress),
-        Kind::Svg => draw(picture, wish, Svg::new(output, style).map_err(write)?, progress),
-        Kind::Png => {
-            let png = Png::new(output, style)
-                .map_err(|error| DotsError::Taker(DrawError::Picture(error)))?;
-            draw(picture, wish, png, progress)
-        }
-    }
-}
-
-/// Puts every dot into `drawing`.
-fn draw(
-    picture: Picture,
-    wish: Wish,
-    mut drawing: impl Drawing,
-    progress: &mut Progress,
-) -> Result<(), DotsError<DrawError>> {
-    let end = DVec2::new(picture.width as f64, picture.height as f64);
-    dots::place(
-        picture,
-        wish,
-        || {},
-        |DVec2 { x, y }| {
-            progress.point();
-            drawing.dot(narrowed(x, end.x), narrowed(y, end.y)).map_err(DrawError::Write)
-        },
-    )?;
-    drawing.finish().map_err(|error| DotsError::Taker(DrawError::Write(error)))
-}
-
-/// The 32-bit float nearest to `coordinate` of those below `end`.
-fn narrowed(coordinate: f64, end: f64) -> f32 {
-    let narrow = coordinate as f32;
-    if f64::from(narrow) < end { narrow } else { narrow.next_down() }
-}
-
 /// Why drawing stopped.
 #[derive(Debug)]
 enum DrawError {
-    Write(io::Error),
-    Picture(PngError),
+    Drawing(DrawingError),
+    /// Fewer dots than asked for lie a pen's width apart.
+    NotExact {
+        asked: usize,
+        found: usize,
+    },
 }
 
 impl fmt::Display for DrawError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Write(error) => error.fmt(out),
-            Self::Picture(error) => error.fmt(out),
+            Self::Drawing(error) => error.fmt(out),
+            Self::NotExact { asked, found } => {
+                write!(out, "of {asked} dots only {found} lie a pen's width apart; ask for fewer")
+            }
         }
     }
 }
@@ -297,26 +289,3 @@ impl fmt::Display for Blank {
 }
 
 impl std::error::Error for Blank {}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_ending_chooses_the_kind_in_any_case() {
-        assert_eq!(Kind::of(Path::new("a/b.SVG")), Some(Kind::Svg));
-        assert_eq!(Kind::of(Path::new("x.tar.csv")), Some(Kind::Csv));
-        for none in ["svg", ".png", "x.jpg", "x.", "png/x"] {
-            assert_eq!(Kind::of(Path::new(none)), None, "{none}");
-        }
-    }
-
-    #[test]
-    fn rounding_never_carries_a_dot_onto_the_open_border() {
-        for end in [1.0, 451.0, 4000.0, 16_777_217.0, 1e8 + 1.0] {
-            let narrow = narrowed(f64::next_down(end), end);
-            assert!(f64::from(narrow) < end && f64::from(narrow.next_up()) >= end, "{end}");
-        }
-        assert_eq!(narrowed(0.1, 1.0), 0.1);
-    }
-}

@@ -25,6 +25,8 @@ pub(crate) struct Wish {
     pub(crate) seed: u64,
     /// Iterations.
     pub(crate) refine: usize,
+    /// In an order of which each beginning is itself a good set.
+    pub(crate) ranked: bool,
 }
 
 /// A number of dots.
@@ -83,7 +85,7 @@ impl<E: fmt::Display> fmt::Display for DotsError<E> {
 impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
 
 /// Hands every dot of a picture, in pixels, to `take`; says after each iteration of refinement that it is
-/// done.
+/// done. Keeps no list if they are neither refined nor ranked.
 ///
 /// # Errors
 /// [`DotsError`], and what `take` fails with.
@@ -93,14 +95,26 @@ pub(crate) fn place<E>(
     iteration: impl FnMut(),
     mut take: impl FnMut(DVec2) -> Result<(), E>,
 ) -> Result<(), DotsError<E>> {
-    if wish.refine == 0 {
-        return raw(picture, wish, take);
+    if wish.refine == 0 && !wish.ranked {
+        return raw(picture, wish, |dot, _| take(dot));
     }
-    let mut dots = Vec::new();
-    raw(copy(&picture)?, wish, |dot| {
-        dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
-        dots.push(dot);
-        Ok(())
+    let dots = list(&picture, wish, iteration)?;
+    dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
+}
+
+/// Every dot of a picture, in pixels; says after each iteration of refinement that it is done.
+///
+/// # Errors
+/// [`DotsError`].
+pub(crate) fn list<E>(
+    picture: &Picture,
+    wish: Wish,
+    iteration: impl FnMut(),
+) -> Result<Vec<DVec2>, DotsError<E>> {
+    let mut ranked: Vec<(f64, DVec2)> = Vec::new();
+    raw(copy(picture)?, wish, |dot, key| {
+        let room = ranked.try_reserve(1);
+        room.map(|()| ranked.push((key, dot))).map_err(|_| ranked.len() + 1)
     })
     .map_err(|error| match error {
         DotsError::Taker(count) => DotsError::Memory(count),
@@ -110,8 +124,14 @@ pub(crate) fn place<E>(
         DotsError::Refine(error) => DotsError::Refine(error),
         DotsError::Memory(count) => DotsError::Memory(count),
     })?;
-    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
-    dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
+    if wish.ranked {
+        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+    }
+    let mut dots: Vec<DVec2> = ranked.into_iter().map(|(_, dot)| dot).collect();
+    if wish.refine > 0 {
+        refined(picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    }
+    Ok(dots)
 }
 
 /// Refines dots where they are.
@@ -138,11 +158,11 @@ fn copy<E>(picture: &Picture) -> Result<Picture, DotsError<E>> {
     Ok(Picture { importance, warnings: Vec::new(), ..*picture })
 }
 
-/// The dots as the sampling gives them.
+/// The dots as the sampling gives them, each with a key by which they are ranked if that is wished.
 fn raw<E>(
     Picture { width, height, importance, .. }: Picture,
     wish: Wish,
-    mut take: impl FnMut(DVec2) -> Result<(), E>,
+    mut take: impl FnMut(DVec2, f64) -> Result<(), E>,
 ) -> Result<(), DotsError<E>> {
     let invalid = InvalidPixels::Reject;
     match (wish.count, wish.centers) {
@@ -151,13 +171,16 @@ fn raw<E>(
             let placement = Placement::new(map.domain(), wish.seed);
             let dots =
                 exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
-            dots.iter().try_for_each(|dot| take(dot.position).map_err(DotsError::Taker))
+            let mut keys = (0u32..).map(f64::from);
+            dots.iter().try_for_each(|dot| {
+                take(dot.position, keys.next().unwrap_or(f64::MAX)).map_err(DotsError::Taker)
+            })
         }
         (Count::About(count), Centers::Fixed) => {
             let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count));
-            stream(&sampling.map_err(DotsError::Sampling)?, take)
+            stream(&sampling.map_err(DotsError::Sampling)?, &map, wish.ranked, take)
         }
         (Count::About(count), Centers::Relaxed) => {
             let map = StippleMap::new(width, height, importance, invalid, count)
@@ -166,20 +189,25 @@ fn raw<E>(
             let sampling = Sampling::new(&placement, &map, Amount::Points(count))
                 .and_then(Sampling::relaxed)
                 .map_err(DotsError::Sampling)?;
-            stream(&sampling, take)
+            stream(&sampling, &map, wish.ranked, take)
         }
     }
 }
 
 /// Every point of a sampling.
-fn stream<E>(
-    sampling: &Sampling<'_, impl Importance>,
-    mut take: impl FnMut(DVec2) -> Result<(), E>,
+fn stream<I: Importance, E>(
+    sampling: &Sampling<'_, I>,
+    map: &I,
+    ranked: bool,
+    mut take: impl FnMut(DVec2, f64) -> Result<(), E>,
 ) -> Result<(), DotsError<E>> {
     // In 64 bits because 32 would be too few in a picture with sides of very different length.
     for point in sampling.points().map_err(DotsError::Sampling)? {
-        let Sample::<DVec2> { position, .. } = point.map_err(DotsError::Sampling)?;
-        take(position).map_err(DotsError::Taker)?;
+        let Sample::<DVec2> { position, rank } = point.map_err(DotsError::Sampling)?;
+        // The density at which it appears; a relaxed point may have left what it was accepted by.
+        let key =
+            if ranked { rank as f64 / map.value(position).max(f64::MIN_POSITIVE) } else { 0.0 };
+        take(position, key).map_err(DotsError::Taker)?;
     }
     Ok(())
 }

@@ -33,6 +33,14 @@ pub(crate) fn correct(pixels: &mut [f32]) {
     }
 }
 
+/// Turns darkness, 0 to 1, into its square: a line through dots is as long as the root of their number, so
+/// that squares give it the picture's tone.
+pub(crate) fn square(pixels: &mut [f32]) {
+    for pixel in pixels {
+        *pixel *= *pixel;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

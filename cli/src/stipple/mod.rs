@@ -3,3 +3,4 @@
 pub(crate) mod budget;
 pub(crate) mod dots;
 pub(crate) mod gain;
+pub(crate) mod plan;
