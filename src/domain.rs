@@ -12,7 +12,7 @@ pub struct Domain {
     size: DVec2,
 }
 
-/// Why a rectangle is no [`Domain`].
+/// Why a rectangle is not a [`Domain`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DomainError {

@@ -65,9 +65,15 @@ pub enum SamplingError {
         of: usize,
     },
     /// The position type cannot tell the points of the domain apart: it is too far from the origin for
-    /// any number of this precision to lie in it, or its sizes leave the precision's range (for `f32`,
-    /// a diagonal outside of some 10⁻³⁰ … 10³⁷).
+    /// any number of this precision to lie in it, its short side is not well above the rounding of
+    /// positions (for `f32`, sides past 1 to 43,690), or its sizes leave the precision's range (for
+    /// `f32`, a diagonal outside of some 10⁻³⁰ … 10³⁷).
     Precision,
+    /// The memory for the points is not to be had.
+    Memory {
+        /// How much was asked for.
+        bytes: usize,
+    },
 }
 
 impl fmt::Display for SamplingError {
@@ -101,8 +107,9 @@ impl fmt::Display for SamplingError {
             ),
             Self::Part { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
             Self::Precision => {
-                f.write_str("positions of this precision cannot resolve the domain; use DVec2")
+                f.write_str("positions of this precision cannot resolve the domain")
             }
+            Self::Memory { bytes } => write!(f, "the points need {bytes} bytes of memory"),
         }
     }
 }

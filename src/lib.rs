@@ -1,7 +1,7 @@
 //! Well-spread points with a density you control, from tables baked at build time.
 //!
 //! twelvefold places points by Ostromoukhov's dodecagonal tiling: four tile types subdivide into each
-//! other for ever; every tile gives one point and a rank; a point is accepted where the importance
+//! other endlessly; every tile gives one point and a rank; a point is accepted where the importance
 //! reaches its rank. The result is a point set that is evenly spread at any density, follows an
 //! importance map, and is the same, bit for bit, on every machine.
 //!
@@ -31,26 +31,29 @@
 //! 4. [`Importance`]: value at a point, upper bound over a region. [`Constant`], [`ImageMap`],
 //!    [`Function`], or your own.
 //! 5. [`Sampling`]: descends only where a point can be accepted, and reads blocks of points from the
-//!    tables. Received by [`fill`](Sampling::fill), [`visit`](Sampling::visit) or
-//!    [`points`](Sampling::points).
+//!    tables. Received by [`fill`](Sampling::fill), by [`points`](Sampling::points), or in parts of a
+//!    [`Division`](Sampling::divide).
+//!
+//! After that, [`estimate`] makes weights of fixed points, and `refine` (with `std`) moves points until
+//! they draw a picture. `ARCHITECTURE.md` in the repository shows where each of these lives.
 //!
 //! # Promises
 //!
 //! The same crate version, tables, domain, seed, importance and amount give the same points on every
 //! platform, whatever the baked depth. Decisions compare integers, or floating-point numbers that only
-//! ever came from +, −, ×, ÷ and √. No function panics on any input; mistakes are error values that
-//! say where they are. The library contains no `unsafe` code.
+//! ever came from +, −, ×, ÷ and √.
+//!
+//! Numbers, sizes and bytes that do not fit are error values that say where they are, not panics. What a
+//! caller's own importance or closure does is its own, and memory that runs out ends the program as it
+//! does elsewhere in Rust. The library contains no `unsafe` code.
 //!
 //! # Features
 //!
-//! Libraries want `default-features = false`, which needs `alloc` only, and what they use of these:
+//! The default is `std` and `simd`. Without default features the library needs `alloc` only.
 //!
+//! - `std` (default): the module `refine`; glam and serde use `std`;
 //! - `simd` (default): wider vector instructions, chosen when the program runs; the same points;
-//! - `parallel`: `fill_parallel` and `Shards`, with rayon; the same points in the same order;
-//! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
-//! - `train`: the module `relax`, which trains relaxed offsets;
-//! - `cli` (default): the program and all that it needs;
-//! - `std`: the module [`refine`]; glam and serde use `std`.
+//! - `parallel`: `Shards`, and threads for `refine`, with rayon; the same points in the same order.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
@@ -67,7 +70,9 @@ mod domain;
 mod emit;
 mod error;
 pub mod estimate;
+pub mod export;
 pub mod importance;
+pub mod light;
 mod placement;
 mod position;
 #[doc(hidden)]

@@ -58,7 +58,7 @@ macro_rules! scalar {
 scalar!(f32, Some);
 scalar!(f64, |_| None);
 
-/// A position type: glam's [`Vec2`] (`f32`) or [`DVec2`] (`f64`).
+/// A position type: glam's [`Vec2`] or `[f32; 2]`, glam's [`DVec2`] or `[f64; 2]`.
 pub trait Position: Copy + Default + sealed::Sealed {
     /// The type of its coordinates.
     type Scalar: Scalar;
@@ -92,6 +92,25 @@ impl Position for DVec2 {
     }
 }
 
+macro_rules! pair {
+    ($float:ident) => {
+        impl Position for [$float; 2] {
+            type Scalar = $float;
+            #[inline(always)]
+            fn from_xy(x: $float, y: $float) -> Self {
+                [x, y]
+            }
+            #[inline(always)]
+            fn xy(self) -> Self {
+                self
+            }
+        }
+    };
+}
+
+pair!(f32);
+pair!(f64);
+
 /// A coordinate type with the position type it makes: `f32` with [`Vec2`], `f64` with [`DVec2`].
 pub trait Coordinate: Scalar {
     /// The position type.
@@ -110,6 +129,8 @@ mod sealed {
     pub trait Sealed {}
     impl Sealed for f32 {}
     impl Sealed for f64 {}
+    impl Sealed for [f32; 2] {}
+    impl Sealed for [f64; 2] {}
     impl Sealed for glam::Vec2 {}
     impl Sealed for glam::DVec2 {}
 }

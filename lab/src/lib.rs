@@ -10,6 +10,8 @@ pub mod measure;
 pub mod paper;
 pub mod random;
 #[cfg(feature = "program")]
+pub mod render;
+#[cfg(feature = "program")]
 pub mod rivals;
 pub mod stipplers;
 #[cfg(feature = "program")]

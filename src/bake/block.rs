@@ -11,8 +11,8 @@
 
 use alloc::vec::Vec;
 
-use super::BakeError;
 use super::class::Classes;
+use super::error::BakeError;
 use crate::tiling::cyclotomic::Surd;
 use crate::tiling::{Cyclotomic, Rules, Tile, TileType};
 
@@ -23,7 +23,7 @@ pub struct Entry {
     pub rank_a: u16,
     /// B.
     pub rank_b: u16,
-    /// How many levels below the block's tile it is born, 0..=depth. It unconstrained a tile centre, with the
+    /// How many levels below the block's tile it is born, 0..=depth. It stays a tile centre, with the
     /// same rank, at every deeper level.
     pub born: u8,
     /// Its offset from the block's centre in edges of the level of its birth, in the block's frame.

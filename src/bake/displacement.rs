@@ -27,9 +27,9 @@ pub struct Displacements {
     pub digits: [[u8; 14]; 4],
     /// How the file was made: command, seed, version of the trainer.
     pub provenance: String,
-    /// Simd for smooth importance.
+    /// Vectors for smooth importance.
     pub smooth: Layer,
-    /// Simd for importance with detail at the scale of the spacing.
+    /// Vectors for importance with detail at the scale of the spacing.
     pub rough: Option<Layer>,
 }
 
@@ -48,7 +48,7 @@ pub struct Slot {
     pub generations: u8,
     /// Length of one unit of `vectors`, in edges of the point's level; finite, ≥ 0.
     pub scale: f32,
-    /// Simd in the grandparent's frame, in units of `scale`, indexed by class. Classes past the
+    /// Vectors in the grandparent's frame, in units of `scale`, indexed by class. Classes past the
     /// end are not yet born at the next slot's τ.
     pub vectors: Vec<[i8; 2]>,
 }

@@ -9,9 +9,9 @@ use alloc::vec::Vec;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian};
 use serde::{Deserialize, Serialize};
 
-use super::BakeError;
 use super::block::Block;
 use super::displacement::{Displacements, Layer, Slot};
+use super::error::BakeError;
 use crate::tiling::{Rules, TileType};
 
 /// First bytes of every table file.

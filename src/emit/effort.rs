@@ -31,9 +31,9 @@ impl Effort {
         let mut chunk = Chunk::new();
         let (mut candidates, mut tested, mut points) = (0, 0, 0);
         while traversal.advance(sampling)? {
-            let Candidates { mut start, end, certain, .. } = *traversal.batch();
+            let Candidates { mut start, end, sure, .. } = *traversal.batch();
             candidates += (end - start) as u64;
-            tested += (end - certain.clamp(start, end)) as u64;
+            tested += (end - sure.clamp(start, end)) as u64;
             while start < end {
                 start = traversal.select::<I, DVec2>(sampling, &to_world, start, &mut chunk)?;
                 points += chunk.keep[..chunk.len].iter().map(|keep| u64::from(*keep)).sum::<u64>();
@@ -49,7 +49,7 @@ impl<I: Importance> Sampling<'_, I> {
     /// points it makes. Costs a walk.
     ///
     /// # Errors
-    /// As [`visit`](Self::visit).
+    /// As [`fill`](Self::fill).
     pub fn effort(&self) -> Result<Effort, SamplingError> {
         Effort::of(self)
     }

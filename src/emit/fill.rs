@@ -210,10 +210,11 @@ fn fill_from<K: Mode, I: Importance, O: Output>(
                     Some(ground) => ground.steps(sampling.placement(), traversal.batch()),
                     None => None,
                 };
-                let output = (&mut output, &mut written);
-                let complete = emit(sampling, &traversal, steps, &to_world, &mut chunk, output)?;
+                let (output, written) = (&mut output, &mut written);
+                let complete =
+                    emit(sampling, &traversal, steps, &to_world, &mut chunk, output, written)?;
                 if !complete {
-                    return Ok(Filled { written, complete });
+                    return Ok(Filled { written: *written, complete });
                 }
             }
             Ok(Filled { written, complete: true })
@@ -230,17 +231,18 @@ fn emit<K: Mode, I: Importance, S: Scalar, O: Output<Position: Position<Scalar =
     steps: Option<Displaced<'_, S>>,
     to_world: &ToWorld<S>,
     chunk: &mut Chunk<S>,
-    (output, written): (&mut O, &mut usize),
+    output: &mut O,
+    written: &mut usize,
 ) -> Result<bool, SamplingError> {
     let batch = traversal.batch();
     let mut next = batch.start;
     let room = output.room() - *written;
     // Nothing to test: straight from the tables into the buffer.
-    let certain = batch.certain.min(batch.end);
-    let all = batch.inside && certain.saturating_sub(next) <= room;
+    let sure = batch.sure;
+    let all = batch.inside && sure.saturating_sub(next) <= room;
     if all && (!K::RELAXED || steps.is_some()) {
-        while next < certain {
-            let most = certain - next;
+        while next < sure {
+            let most = sure - next;
             let (segment, end) = batch.segment(sampling.placement(), next, most);
             let centres = segment.positions();
             match steps {

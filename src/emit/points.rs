@@ -77,10 +77,10 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     /// Calls `take` for each point, for as long as it succeeds: the same as the iterator, with less
     /// between one point and the next.
     #[inline]
-    pub(crate) fn for_each_sample(
+    pub(crate) fn for_each_sample<E: From<SamplingError>>(
         mut self,
-        mut take: impl FnMut(Sample<P>) -> Result<(), SamplingError>,
-    ) -> Result<(), SamplingError> {
+        mut take: impl FnMut(Sample<P>) -> Result<(), E>,
+    ) -> Result<(), E> {
         while self.next_chunk()? {
             for i in 0..self.chunk.len {
                 take(self.sample(i))?;
@@ -115,6 +115,11 @@ impl<'a, I: Importance> Sampling<'a, I> {
     ///     let sample = sample?;
     ///     assert!(sample.position.x < 1.0 && sample.position.y < 1.0);
     /// }
+    /// // Plain arrays for those whose vectors are not glam's; the same numbers.
+    /// let arrays = sampling.points::<[f32; 2]>()?;
+    /// assert!(arrays.zip(sampling.points::<Vec2>()?).all(|(a, b)| {
+    ///     matches!((a, b), (Ok(a), Ok(b)) if a.position == b.position.to_array())
+    /// }));
     /// # Ok::<(), twelvefold::SamplingError>(())
     /// ```
     ///
@@ -144,6 +149,24 @@ impl<I: Importance, P: Position> Iterator for Points<'_, I, P> {
         }
         self.next += 1;
         Some(Ok(self.sample(self.next - 1)))
+    }
+
+    /// Chunk by chunk: less between one point and the next.
+    fn fold<B, F: FnMut(B, Self::Item) -> B>(mut self, init: B, mut f: F) -> B {
+        let mut folded = init;
+        loop {
+            for i in self.next..self.chunk.len {
+                folded = f(folded, Ok(self.sample(i)));
+            }
+            if self.failed {
+                return folded;
+            }
+            match self.next_chunk() {
+                Ok(true) => {}
+                Ok(false) => return folded,
+                Err(error) => return f(folded, Err(error)),
+            }
+        }
     }
 }
 

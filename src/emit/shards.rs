@@ -10,7 +10,7 @@ use crate::importance::Importance;
 use crate::position::Position;
 use crate::sampling::Sampling;
 
-/// Parts a thread: enough that a thread with more work than expected holds up no other.
+/// Parts a thread: enough that a thread with more work than expected does not hold up the others.
 const PARTS_PER_THREAD: usize = 4;
 
 /// Buffers of the parts of a sampling, kept from frame to frame: memory for the points, which grows to what
@@ -80,9 +80,7 @@ impl<P: Position> Buffer<P> {
         expected: usize,
     ) -> Result<(), SamplingError> {
         self.len = 0;
-        if self.points.len() < expected {
-            self.points.resize(expected, P::default());
-        }
+        self.grow(expected)?;
         loop {
             let Filled { written, complete } = part.fill(&mut self.points)?;
             if complete {
@@ -90,8 +88,19 @@ impl<P: Position> Buffer<P> {
                 return Ok(());
             }
             // Only until the buffer has grown to what this sequence of samplings needs.
-            self.points.resize(2 * self.points.len().max(64), P::default());
+            self.grow(self.points.len().max(64).saturating_mul(2))?;
         }
+    }
+
+    /// Makes room for `len` points at least.
+    fn grow(&mut self, len: usize) -> Result<(), SamplingError> {
+        let more = len.saturating_sub(self.points.len());
+        if more > 0 {
+            let bytes = len.saturating_mul(size_of::<P>());
+            self.points.try_reserve_exact(more).map_err(|_| SamplingError::Memory { bytes })?;
+            self.points.resize(len, P::default());
+        }
+        Ok(())
     }
 }
 

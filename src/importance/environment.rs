@@ -6,6 +6,8 @@ use core::fmt;
 
 use glam::{DVec2, DVec3};
 
+use super::frame::Frame;
+use super::policy::RadiancePolicy;
 use super::{ImageMap, InvalidPixels, MapError};
 
 /// Why pixels are no environment map.
@@ -104,13 +106,15 @@ pub struct EnvironmentMap {
     cosines: Vec<f64>,
     /// ∫ luminance over the sphere.
     total: f64,
+    frame: Frame,
 }
 
 impl EnvironmentMap {
     /// The map of these pixels (linear red, green, blue), row by row from the upper left. O(pixels).
     ///
-    /// Components that are no radiance follow `invalid`; an HDR image that was resampled often holds
-    /// negative ones, which [`InvalidPixels::ZeroNegative`] takes as 0.
+    /// Components that are no radiance follow `invalid`, an [`InvalidPixels`] or a [`RadiancePolicy`]; an
+    /// HDR image that was resampled often holds negative ones, which [`InvalidPixels::ZeroNegative`] takes
+    /// as 0.
     ///
     /// # Errors
     /// [`EnvironmentError`]: sizes that do not match, and the first component that `invalid` does not
@@ -119,7 +123,7 @@ impl EnvironmentMap {
         width: usize,
         height: usize,
         mut pixels: Vec<[f32; 3]>,
-        invalid: InvalidPixels,
+        invalid: impl Into<RadiancePolicy>,
     ) -> Result<Self, EnvironmentError> {
         if width == 0 || height == 0 {
             return Err(MapError::Empty { width, height }.into());
@@ -128,10 +132,11 @@ impl EnvironmentMap {
         if pixels.len() != expected {
             return Err(MapError::Length { expected, found: pixels.len() }.into());
         }
+        let policy = invalid.into();
         for (i, pixel) in pixels.iter_mut().enumerate() {
             for (channel, component) in pixel.iter_mut().enumerate() {
                 let value = *component;
-                *component = invalid.admit(value).ok_or(EnvironmentError::InvalidPixel {
+                *component = policy.admit(value).ok_or(EnvironmentError::InvalidPixel {
                     x: i % width,
                     y: i / width,
                     channel,
@@ -142,7 +147,7 @@ impl EnvironmentMap {
         let cosines: Vec<f64> = (0..=height).map(|y| border_cosine(y, height)).collect();
         let at_equator = TAU / width as f64 * (PI / height as f64);
         let mut total = 0.0;
-        let mut importance = Vec::with_capacity(expected);
+        let mut importance = super::pixels::with_room(expected)?;
         for (row, borders) in pixels.chunks_exact(width).zip(cosines.windows(2)) {
             let solid_angle = TAU / width as f64 * (borders[0] - borders[1]);
             for pixel in row {
@@ -152,7 +157,19 @@ impl EnvironmentMap {
             }
         }
         let importance = ImageMap::new(width, height, importance, InvalidPixels::Reject)?;
-        Ok(Self { importance, radiance: pixels, cosines, total })
+        Ok(Self { importance, radiance: pixels, cosines, total, frame: Frame::default() })
+    }
+
+    /// The same light with directions in another frame.
+    #[must_use]
+    pub fn in_frame(self, frame: Frame) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// The frame of its directions, [`Frame::PBRT`] unless told otherwise.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.frame
     }
 
     /// The importance of the directions, over [0, width) × [0, height).
@@ -192,18 +209,22 @@ impl EnvironmentMap {
         let inside = |c: f64, end: usize| if c > 0.0 { c.min(end as f64) } else { 0.0 };
         let position = DVec2::new(inside(position.x, width), inside(position.y, height));
         let (x, y) = self.importance.texel(position);
-        let down = position.y - y as f64;
-        let (upper, lower) = (self.cosines[y], self.cosines[y + 1]);
-        let z = upper + down * (lower - upper);
-        // sin² = (1 − cos)(1 + cos) keeps its digits near the poles.
-        let sine = libm::sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
-        let azimuth = position.x * (TAU / width as f64);
-        let direction = DVec3::new(sine * libm::cos(azimuth), sine * libm::sin(azimuth), z);
+        let direction = self.direction(y, position.x, position.y - y as f64);
         EnvironmentSample {
             direction,
             pdf: self.pixel_pdf(x, y),
             radiance: self.radiance[y * width + x],
         }
+    }
+
+    /// The direction at x pixels from the left and, in row `row`, `down` pixels from its upper border.
+    pub(crate) fn direction(&self, row: usize, x: f64, down: f64) -> DVec3 {
+        let (upper, lower) = (self.cosines[row], self.cosines[row + 1]);
+        let z = upper + down * (lower - upper);
+        // sin² = (1 − cos)(1 + cos) keeps its digits near the poles.
+        let sine = libm::sqrt(((1.0 - z) * (1.0 + z)).max(0.0));
+        let azimuth = x * (TAU / self.size().0 as f64);
+        self.frame.to_world(DVec3::new(sine * libm::cos(azimuth), sine * libm::sin(azimuth), z))
     }
 
     /// The position in the image, in pixels from the upper left corner, of a direction of any length
@@ -217,6 +238,7 @@ impl EnvironmentMap {
         if !(length > 0.0 && length.is_finite()) {
             return None;
         }
+        let scaled = self.frame.to_image(scaled);
         let z = (scaled.z / length).clamp(-1.0, 1.0);
         // Cosines fall from row to row.
         let row = self.cosines.partition_point(|border| *border >= z);
@@ -250,9 +272,14 @@ impl EnvironmentMap {
         })
     }
 
+    /// All pixels, row by row.
+    pub(crate) fn pixels(&self) -> &[[f32; 3]] {
+        &self.radiance
+    }
+
     /// Importance of the pixel over the total, over its solid angle: what the sampler really follows,
     /// `f32` rounding included.
-    fn pixel_pdf(&self, x: usize, y: usize) -> f64 {
+    pub(crate) fn pixel_pdf(&self, x: usize, y: usize) -> f64 {
         let importance = f64::from(self.importance.pixels()[y * self.size().0 + x]);
         let sum = self.importance.mean() * self.importance.pixels().len() as f64;
         if sum > 0.0 { importance / (sum * self.solid_angle(y)) } else { 0.0 }
@@ -269,12 +296,12 @@ fn border_cosine(y: usize, height: usize) -> f64 {
 }
 
 /// Rec. 709 luminance. Positive if a component is.
-fn luminance([red, green, blue]: [f32; 3]) -> f64 {
+pub(crate) fn luminance([red, green, blue]: [f32; 3]) -> f64 {
     0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue)
 }
 
 /// As `f32`, but 0 only for 0 and never infinite: light that rounds to nothing would never be sampled.
-fn importance_of(value: f64) -> f32 {
+pub(crate) fn importance_of(value: f64) -> f32 {
     let rounded = value as f32;
     if value > 0.0 { rounded.clamp(f32::from_bits(1), f32::MAX) } else { 0.0 }
 }

@@ -55,11 +55,12 @@ impl ImageMap {
                 value,
             })?;
         }
-        let row_sums: Vec<f64> = pixels.chunks_exact(width).map(pixels::sum).collect();
+        let mut row_sums: Vec<f64> = pixels::with_room(height)?;
+        row_sums.extend(pixels.chunks_exact(width).map(pixels::sum));
         let sum = pixels::sum(&row_sums);
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
-        let extremes = Extremes::new(&pixels, width, height);
+        let extremes = Extremes::new(&pixels, width, height)?;
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
         Ok(Self { pixels, extremes, row_sums, sum, domain, lattice })
     }

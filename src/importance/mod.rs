@@ -7,10 +7,12 @@
 mod bilinear;
 mod constant;
 mod environment;
+pub(crate) mod frame;
 mod function;
 mod image;
 mod pixels;
 mod planes;
+pub(crate) mod policy;
 mod probed;
 mod raster;
 mod stipple;
@@ -18,6 +20,7 @@ mod stipple;
 pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
 pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
+pub(crate) use environment::{importance_of, luminance};
 pub use function::Function;
 pub use image::ImageMap;
 pub use pixels::{InvalidPixels, MapError, PixelData, PixelView};
@@ -103,8 +106,9 @@ pub trait Importance {
         }
     }
 
-    /// Relaxed points only: where a point goes that is accepted at `centre`, a place of the domain, down
-    /// to importance `needed`, and that relaxation would move to `moved`, another. Never where the
+    /// Relaxed points only: where a point ends up. Its tile's centre is `centre`, its rank is accepted
+    /// where the importance is above `needed`, and relaxation would move it to `moved`; both are places
+    /// of the domain. Never where the
     /// importance is 0: by default, back towards the centre until it is not. Importance with hard edges
     /// keeps points on their side. Not farther from `moved` than
     /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `centre`.
@@ -113,8 +117,9 @@ pub trait Importance {
         retreat(centre, moved, |at| self.value(at) > 0.0)
     }
 
-    /// 1 for each point `(x[i], y[i])` that [`constrain`](Self::constrain) would leave there, moved, down to
-    /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where many at once
+    /// Which moved points may stay: 1 for each place `(x[i], y[i])` at which
+    /// [`constrain`](Self::constrain) is sure to leave a point of importance `needed[i]`, and 0 for each
+    /// about which it has to be asked. Worth overriding where many at once
     /// are cheaper.
     #[inline]
     fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {

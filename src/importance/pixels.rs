@@ -1,8 +1,9 @@
 //! Pixels on their way into maps: views of the caller's, checked, counted as the policy says, summed.
 
+use alloc::vec::Vec;
 use core::fmt;
 
-/// What to do with pixels that are no importance.
+/// What to do with pixels that cannot be an importance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum InvalidPixels {
@@ -16,21 +17,7 @@ pub enum InvalidPixels {
     ZeroAll,
 }
 
-impl InvalidPixels {
-    /// The value as it counts, or `None` if this policy does not admit it.
-    pub(crate) fn admit(self, value: f32) -> Option<f32> {
-        if (0.0..f32::INFINITY).contains(&value) {
-            return Some(value);
-        }
-        match self {
-            Self::ZeroAll => Some(0.0),
-            Self::ZeroNegative if value < 0.0 && value.is_finite() => Some(0.0),
-            _ => None,
-        }
-    }
-}
-
-/// Why pixels are no importance map.
+/// Why pixels are not an importance map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MapError {
@@ -48,7 +35,7 @@ pub enum MapError {
         /// The number of pixels.
         found: usize,
     },
-    /// The first pixel, row by row, that is no importance.
+    /// The first pixel, row by row, that cannot be an importance.
     InvalidPixel {
         /// Its column, from 0.
         x: usize,
@@ -59,6 +46,11 @@ pub enum MapError {
     },
     /// A dirty rectangle or patch does not lie within the map.
     OutsideMap,
+    /// The memory for the map is not to be had.
+    Memory {
+        /// How much was asked for.
+        bytes: usize,
+    },
 }
 
 impl fmt::Display for MapError {
@@ -74,11 +66,27 @@ impl fmt::Display for MapError {
                 write!(f, "pixel ({x}, {y}) is {value}: importance must be finite and not negative")
             }
             Self::OutsideMap => f.write_str("the rectangle does not lie within the map"),
+            Self::Memory { bytes } => write!(f, "the map needs {bytes} bytes of memory"),
         }
     }
 }
 
 impl core::error::Error for MapError {}
+
+/// An empty vector with room for `len`.
+pub(super) fn with_room<T>(len: usize) -> Result<Vec<T>, MapError> {
+    let mut items = Vec::new();
+    let bytes = len.saturating_mul(size_of::<T>());
+    items.try_reserve_exact(len).map_err(|_| MapError::Memory { bytes })?;
+    Ok(items)
+}
+
+/// `len` zeros, or whatever `item` is.
+pub(super) fn filled<T: Clone>(item: T, len: usize) -> Result<Vec<T>, MapError> {
+    let mut items = with_room(len)?;
+    items.resize(len, item);
+    Ok(items)
+}
 
 /// Pixels in rows. Values count as they are: an 8-bit 255 is importance 255.
 #[derive(Clone, Copy, Debug)]

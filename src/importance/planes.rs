@@ -20,6 +20,8 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use super::pixels::{MapError, filled, with_room};
+
 /// The relative deviations between which the share of the layer for detail grows from 0 to 1.
 const DETAIL_RANGE: [f64; 2] = [0.03, 0.15];
 
@@ -78,11 +80,11 @@ struct Surroundings {
 }
 
 impl Planes {
-    pub(super) fn new(image: &[f32], width: usize, scales: &Scales) -> Self {
+    pub(super) fn new(image: &[f32], width: usize, scales: &Scales) -> Result<Self, MapError> {
         let height = image.len().checked_div(width).unwrap_or(0);
-        let plane = || Vec::with_capacity(image.len());
-        let (mut tones, mut phase, mut halves) = (plane(), plane(), plane());
-        let mut detail = Vec::with_capacity(image.len());
+        let plane = || with_room(image.len());
+        let (mut tones, mut phase, mut halves) = (plane()?, plane()?, plane()?);
+        let mut detail = with_room(image.len())?;
         in_bands(image, width, height, scales.largest, |sums, x, y| {
             let value = image[y * width + x];
             let around = surroundings(sums, [x, y], value.into(), scales);
@@ -91,8 +93,8 @@ impl Planes {
             phase.push(around.phase as f32);
             detail.push(around.detail);
             halves.push(around.half as f32);
-        });
-        let mut spread = Spread::new(width, height);
+        })?;
+        let mut spread = Spread::new(width, height)?;
         in_bands(&tones, width, height, scales.largest, |sums, x, y| {
             let i = y * width + x;
             let rest = f64::from(image[i]) - f64::from(tones[i]);
@@ -103,9 +105,9 @@ impl Planes {
                     spread.add(&cut, rest / sum);
                 }
             }
-        });
+        })?;
         spread.finish(&mut tones);
-        Self { acceptance: tones, phase, detail }
+        Ok(Self { acceptance: tones, phase, detail })
     }
 }
 
@@ -150,20 +152,21 @@ fn in_bands(
     height: usize,
     largest: f64,
     mut pixel: impl FnMut(&Sums, usize, usize),
-) {
+) -> Result<(), MapError> {
     let reach = (libm::ceil(largest).min(height as f64) as usize) + 1;
     let band = reach.max(32);
     for first in (0..height).step_by(band) {
         let rows = first..(first + band).min(height);
         let from = rows.start.saturating_sub(reach);
         let until = (rows.end + reach).min(height);
-        let sums = Sums::new(image, width, from..until);
+        let sums = Sums::new(image, width, from..until)?;
         for y in rows {
             for x in 0..width {
                 pixel(&sums, x, y);
             }
         }
     }
+    Ok(())
 }
 
 /// A box in pixels.
@@ -182,10 +185,10 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(pixels: &[f32], width: usize, rows: Range<usize>) -> Self {
+    fn new(pixels: &[f32], width: usize, rows: Range<usize>) -> Result<Self, MapError> {
         let stride = width + 1;
-        let mut sums = alloc::vec![[0.0; 2]; stride];
-        sums.reserve_exact(stride * rows.len());
+        let mut sums = with_room(stride * (rows.len() + 1))?;
+        sums.resize(stride, [0.0; 2]);
         for (y, row) in pixels.chunks_exact(width).skip(rows.start).take(rows.len()).enumerate() {
             let mut sum = [0.0; 2];
             sums.push(sum);
@@ -196,7 +199,7 @@ impl Sums {
                 sums.push([above[0] + sum[0], above[1] + sum[1]]);
             }
         }
-        Self { sums, width, from: rows.start, until: rows.end }
+        Ok(Self { sums, width, from: rows.start, until: rows.end })
     }
 
     /// The integrals over [0, x) and the rows up to y, a place inside them.
@@ -260,8 +263,8 @@ struct Spread {
 }
 
 impl Spread {
-    fn new(width: usize, height: usize) -> Self {
-        Self { differences: alloc::vec![0.0; (width + 2) * (height + 2)], width }
+    fn new(width: usize, height: usize) -> Result<Self, MapError> {
+        Ok(Self { differences: filled(0.0, (width + 2) * (height + 2))?, width })
     }
 
     /// Adds `height` over a box: the adjoint of [`Sums::over`], pixel by pixel what each has in the box.
@@ -297,6 +300,80 @@ impl Spread {
                 sum += *difference;
                 *above += sum;
                 *tone = (f64::from(*tone) * (1.0 + *above)).max(0.0) as f32;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix64;
+    use proptest::prelude::*;
+
+    fn planes(image: &[f32], width: usize, count: f64) -> Planes {
+        let mean = sum(image) / image.len() as f64;
+        let mean_spacing = libm::sqrt(image.len() as f64 / count);
+        let spacing_of_one = mean_spacing * libm::sqrt(mean);
+        let largest = 1.5 * mean_spacing;
+        Planes::new(
+            image,
+            width,
+            &Scales { spacing_of_one, mean_spacing, largest, acceptance: 0.8 },
+        )
+        .unwrap()
+    }
+
+    fn sum(pixels: &[f32]) -> f64 {
+        pixels.iter().map(|v| f64::from(*v)).sum()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn acceptance_keeps_the_sum_and_every_pixel_of_0(
+            seed: u64,
+            (width, height) in (1usize..40, 1usize..40),
+            white in prop_oneof![Just(0.0), Just(0.5), Just(0.97)],
+            count in 1.0..2000.0f64,
+        ) {
+            let mut random = SplitMix64::new(seed);
+            let image: Vec<f32> = (0..width * height)
+                .map(|_| if random.unit() < white { 0.0 } else { random.unit() as f32 })
+                .collect();
+            prop_assume!(sum(&image) > 0.0);
+            let acceptance = planes(&image, width, count).acceptance;
+            let (wanted, given) = (sum(&image), sum(&acceptance));
+            prop_assert!((given / wanted - 1.0).abs() < 1e-6, "{given} {wanted}");
+            for (pixel, accepted) in image.iter().zip(&acceptance) {
+                prop_assert!(*accepted >= 0.0 && (*pixel > 0.0 || *accepted == 0.0));
+            }
+        }
+    }
+
+    /// A dark disc in a gray square on white: what each is given.
+    #[test]
+    fn parts_keep_what_they_ask_for() {
+        let side = 160;
+        let tone = |i: usize| {
+            let (x, y) = ((i % side) as f64 - 79.5, (i / side) as f64 - 79.5);
+            match (x * x + y * y < 1225.0, x.abs().max(y.abs()) < 60.0) {
+                (true, _) => 0.92f32,
+                (false, true) => 0.37,
+                _ => 0.0,
+            }
+        };
+        let image: Vec<f32> = (0..side * side).map(tone).collect();
+        for count in [300.0, 1000.0, 4000.0] {
+            let acceptance = planes(&image, side, count).acceptance;
+            for part in [0.92, 0.37] {
+                let of = |pixels: &[f32]| -> f64 {
+                    let pixels = pixels.iter().zip(&image).filter(|(_, tone)| **tone == part);
+                    pixels.map(|(v, _)| f64::from(*v)).sum()
+                };
+                let bias = of(&acceptance) / of(&image) - 1.0;
+                assert!(bias.abs() < 0.003, "{count} {part}: {bias}");
             }
         }
     }

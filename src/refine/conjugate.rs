@@ -101,8 +101,8 @@ impl Flow {
         let mut rounds = 0;
         while rounds < ROUNDS && left > enough && left > 0.0 {
             let along = self.apply();
-            // not above 0, not a number: nothing more to gain
-            if !(along > 0.0) {
+            // Nothing more to gain.
+            if along <= 0.0 || along.is_nan() {
                 break;
             }
             let step = (left / along) as f32;

@@ -7,6 +7,7 @@ use crate::bake::displacement::{
     DisplacementError, Displacements, FIRST_PHASE, Layer, PHASE_SHIFT, PHASES, Slot,
 };
 use crate::bake::format::{LayerBytes, SLOT_BYTES};
+use crate::tables::TablesError;
 use crate::tiling::Digits;
 
 /// Points whose vectors are looked up in one go.
@@ -25,17 +26,21 @@ pub struct DisplacementTable<'a> {
 }
 
 impl<'a> DisplacementTable<'a> {
-    /// `Some(None)` when there are no offsets; `None` for columns that do not fit each other.
-    pub(crate) fn new(provenance: &'a str, layers: &[LayerBytes<'a>; 2]) -> Option<Option<Self>> {
+    /// `None` when there are no offsets.
+    ///
+    /// # Errors
+    /// [`TablesError::Malformed`] for columns that do not fit each other.
+    pub(crate) fn new(
+        provenance: &'a str,
+        layers: &[LayerBytes<'a>; 2],
+    ) -> Result<Option<Self>, TablesError> {
         let [smooth, rough] = layers;
         if smooth.slots.is_empty() {
-            return Some(None);
+            return Ok(None);
         }
-        let rough = match rough.slots.is_empty() {
-            true => None,
-            false => Some(LayerTable::new(rough)?),
-        };
-        Some(Some(Self { provenance, smooth: LayerTable::new(smooth)?, rough }))
+        let layer = |bytes| LayerTable::new(bytes).ok_or(TablesError::Malformed);
+        let rough = if rough.slots.is_empty() { None } else { Some(layer(rough)?) };
+        Ok(Some(Self { provenance, smooth: layer(smooth)?, rough }))
     }
 
     /// How the offsets were made.

@@ -165,8 +165,7 @@ impl<'a> Tables<'a> {
             }
         }
         let digits = Digits::from_derivation_order(digits);
-        let displacements =
-            DisplacementTable::new(provenance, &layers).ok_or(TablesError::Malformed)?;
+        let displacements = DisplacementTable::new(provenance, &layers)?;
         Ok(Self { bytes, depth, digits, displacements, child_kinds, blocks: [a?, b?, c?, d?] })
     }
 

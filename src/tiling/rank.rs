@@ -1,7 +1,7 @@
 //! The exact rank: a numbering of the tiles without gaps, refined from level to level.
 //!
 //! The paper's own value of an F-code (its equations 4 and 5) numbers the tiles with gaps and
-//! collisions; see [`crate::paper`]. With the new digit d most significant, what does number them is
+//! collisions (`paper` in twelvefold-lab). With the new digit d most significant, what does number them is
 //!
 //! rank(child) = d·N_m + rank(parent)                  for d = 0 … C,
 //! rank(child) = 13·N_m + rank(parent) − N_{m−1}       for d = D,

@@ -15,24 +15,33 @@ pub(crate) struct Candidates {
     pub(crate) end: usize,
     /// Every candidate lies in the clip.
     pub(crate) inside: bool,
+    /// Whether the importance is constant where the node's points are.
+    pub(crate) constant: bool,
     /// Entries before this one are accepted wherever they lie in the clip: their ranks are below what
-    /// the lower bound of the importance admits. `end` or more: all of them.
-    pub(crate) certain: usize,
+    /// the lower bound of the importance admits. At most `end`.
+    pub(crate) sure: usize,
     /// The upper bound of the importance over the candidates.
     pub(crate) bound: f64,
 }
 
 impl Candidates {
     /// No candidates.
-    pub(crate) const EMPTY: Self =
-        Self { node: Node::root(), start: 0, end: 0, inside: false, certain: 0, bound: 0.0 };
+    pub(crate) const EMPTY: Self = Self {
+        node: Node::root(),
+        start: 0,
+        end: 0,
+        inside: false,
+        constant: false,
+        sure: 0,
+        bound: 0.0,
+    };
 }
 
 impl Candidates {
-    /// Where the run ends of which entry `start` is: the certain ones, or the others.
+    /// The end of the run that entry `start` is in: that of the sure entries, or that of the others.
     #[inline(always)]
     pub(crate) fn run_end(&self, start: usize) -> usize {
-        if start < self.certain { self.certain.min(self.end) } else { self.end }
+        if start < self.sure { self.sure } else { self.end }
     }
 
     /// The rank of entry `i`.

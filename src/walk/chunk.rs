@@ -1,6 +1,19 @@
 //! Chunks: up to a few hundred candidates in arrays, one pass each for positions, bounds of the
 //! domain, importance and comparison. Each pass is a loop without branches over arrays, which
 //! compilers turn into vector instructions.
+//!
+//! ```text
+//! entries   start ………………… sure ………………… end      a batch: sure entries need no look at the importance
+//!           └─ chunk ─┘└─ chunk ─┘└─ chunk ─┘      at most 256 entries each, never some of both kinds
+//!
+//! load           x, y of the entries             always; candidate i is entry `first` + i
+//! mark_inside    keep = in domain and clip       only across the clip's border
+//! pack           candidates kept to the front    from here on candidate i is `entry[i]`
+//! read_values    values = importance at x, y     only entries that are not sure
+//! mark_accepted  keep = rank < limit(value)      the same
+//! ```
+//!
+//! Whoever receives the chunk takes the candidates with `keep` 1.
 
 use core::ops::Range;
 
@@ -60,8 +73,8 @@ impl<S: Scalar> Chunk<S> {
         if self.packed { self.entry[i].into() } else { self.first + i }
     }
 
-    /// Takes the batch's entries from `start` on, as many as fit and are certain alike, and marks the
-    /// points among them. Returns the next entry.
+    /// Takes the batch's entries from `start` on, as many as fit and are all sure or all not, and
+    /// marks the points among them. Returns the next entry.
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
@@ -70,19 +83,19 @@ impl<S: Scalar> Chunk<S> {
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        let certain = start < batch.certain;
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         if batch.inside {
-            if certain {
+            if sure {
                 self.keep[..self.len].fill(1);
             }
         } else {
             self.mark_inside::<I, P>(walk);
-            if !certain {
+            if !sure {
                 self.pack();
             }
         }
-        if !certain {
+        if !sure {
             self.read_values(sampling);
             self.mark_accepted(sampling, batch)?;
         }

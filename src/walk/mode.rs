@@ -98,7 +98,7 @@ impl Mode for Ancestry {
     ) -> Result<usize, SamplingError> {
         match walk.sampling.displacements() {
             Some(displacements) => {
-                chunk.select_relaxed::<I, P>(walk, displacements, (batch, self), start)
+                chunk.select_relaxed::<I, P>(walk, displacements, batch, self, start)
             }
             // Ancestry is asked for only where there are offsets.
             None => Ok(batch.end),

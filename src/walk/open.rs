@@ -56,7 +56,8 @@ impl<K: Mode> OpenTile<K> {
         &mut self,
         sampling: &Sampling<'_, I>,
         clip: &Clip,
-        (node, ancestry): (&Node, &K),
+        node: &Node,
+        ancestry: &K,
         node_limit: u64,
         node_inside: bool,
     ) -> Result<(), SamplingError> {
@@ -106,7 +107,7 @@ impl<K: Mode> OpenTile<K> {
                 continue;
             }
             let region = Disc { centre: corner + DVec2::new(x[i], y[i]), radius };
-            // No child has more than its parent, even where a bound that is no promise says so: the
+            // No child has more than its parent, even where a bound that need not hold says so: the
             // disc above is made for the parent's limit.
             let limit = sampling.rank_limit_of_bound(*bound, &region)?.min(node_limit);
             let bit = 1 << digit;

@@ -57,17 +57,21 @@ struct Displacer<'w, 'a, I> {
 impl<S: Scalar> Chunk<S> {
     /// As [`select`](Self::select), for relaxed points: takes the batch's entries from `start` on, as
     /// many as fit, and keeps the points among them, where they are moved to.
+    //
+    // load → values → (keep the accepted) → (drop what is too far from the clip) → pack with values → move
+    // → (keep what has landed inside). What is in brackets is for entries that are not sure or not inside.
     #[inline(always)]
     pub(crate) fn select_relaxed<I: Importance, P: Position<Scalar = S>>(
         &mut self,
         walk: &Context<'_, '_, I, S>,
         displacements: &DisplacementTable<'_>,
-        (batch, ancestry): (&Candidates, &Ancestry),
+        batch: &Candidates,
+        ancestry: &Ancestry,
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        // Certain ones too read the importance: their phase depends on it.
-        let certain = start < batch.certain;
+        // Sure ones too read the importance: their phase depends on it.
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
         let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
@@ -82,7 +86,7 @@ impl<S: Scalar> Chunk<S> {
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
         }
-        if certain {
+        if sure {
             self.keep[..self.len].fill(1);
         } else {
             self.mark_accepted(sampling, batch)?;
@@ -90,7 +94,7 @@ impl<S: Scalar> Chunk<S> {
         if !batch.inside {
             self.reject_far(walk);
         }
-        match certain && batch.inside {
+        match sure && batch.inside {
             true => self.list_entries(),
             false => self.pack_with_values(),
         }
@@ -134,8 +138,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
         (corner + DVec2::new(x.to_f64(), y.to_f64())).clamp(self.low, self.high)
     }
 
-    /// The phase that a point reads, at whose level's parents there is one tile in `per_tile` ranks, and
-    /// the contrast: its centre is nearest to `at`, where the importance is `value`.
+    /// The phase that a point reads, and the detail. `at` is the place of the domain nearest to its
+    /// centre, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
@@ -326,7 +330,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 let ancestry = ancestry.child(node, entry, &child);
                 (ClassFormula::of_centre(tables, &ancestry, &child, below - 1), (0, 0))
             }
-            // A bound that is no promise may have hidden that a point is deeper than any here.
+            // A bound that need not hold may have hidden that a point is deeper than any here.
             None => (
                 ClassFormula::of_entries(ancestry, node, below.min(2)),
                 block.rank_coefficients(entry),

@@ -13,7 +13,7 @@ pub(crate) struct Shard {
     to: u64,
     /// The work of the pieces that the walk has passed.
     passed: u64,
-    /// The number of tiles that were open where the piece began that the walk is in.
+    /// How many tiles were open when the current piece began.
     piece_depth: Option<usize>,
 }
 

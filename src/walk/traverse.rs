@@ -4,6 +4,18 @@
 //! not the centre's own is N_m + r. A tile's centre is tested with its parent's batch; so a subtree
 //! whose bound in rank units is at most N_m + r needs no visit. This is sharper than the paper's κ
 //! (its equation 8) and takes no logarithm.
+//!
+//! ```text
+//! level m      tile: limit = ranks that its bound admits
+//!                │ limit ≤ N_m + r                      nothing below it: passed over
+//!                │ few entries left to test             one batch: the block's entries below limit
+//!                │ otherwise: opened                    one batch: the children's centres
+//! level m + 1    ├─ child 0 ─ …                         then each child, digit 0 first
+//!                ├─ child 1 ─ …
+//! ```
+//!
+//! `advance` goes to the next tile (a child of the deepest open tile, or a tile of the frontier, whose own
+//! centre is a batch by itself) and visits it, until there is a batch to hand out.
 
 use super::candidates::Candidates;
 use super::chunk::Chunk;
@@ -41,7 +53,7 @@ const PEAK: f64 = 2.0;
 /// The same at a peak, where the bounds of tiles below differ and save more.
 const FEW_AT_PEAK: usize = 130;
 
-/// The same for a tile across the clip's border, where candidates may be in vain and cost more. From
+/// The same for a tile across the clip's border, where a candidate may lie outside, and costs more. From
 /// 200 to 400 a thousand uniform points cost two thirds; from 400 to 800 other small counts rise.
 const FEW_AT_BORDER: usize = 400;
 
@@ -55,7 +67,8 @@ pub(crate) struct Traversal<K> {
     depth: usize,
     /// The number of frontier tiles begun.
     frontier: usize,
-    /// Of the last one, if only its centre has had its turn: how many ranks its bound admits.
+    /// How many ranks the bound of the frontier tile begun last admits, while only that tile's centre
+    /// has been tested.
     begun: Option<u64>,
     clip: Clip,
     /// The part of the walk that is taken; `None` for all of it.
@@ -149,6 +162,7 @@ impl<K: Mode> Traversal<K> {
                 self.begun = self.enter_frontier(sampling, node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
+                    self.batch.sure = usize::from(self.batch.constant);
                     if self.shard.as_mut().is_none_or(|shard| shard.take(1, 0)) {
                         return Ok(true);
                     }
@@ -180,7 +194,7 @@ impl<K: Mode> Traversal<K> {
             self.batch.bound = open.bounds[digit];
             self.peak = open.bounds[digit] > PEAK * open.mean_bound;
             self.batch.inside = open.inside & bit != 0;
-            self.batch.certain = if open.constant & bit != 0 { usize::MAX } else { 0 };
+            self.batch.constant = open.constant & bit != 0;
             return Some(open.limits[digit]);
         }
     }
@@ -215,8 +229,7 @@ impl<K: Mode> Traversal<K> {
         // No siblings to compare with.
         self.peak = true;
         self.batch.inside = self.clip.holds(&region_of_points);
-        let constant = sampling.importance().is_constant(&region);
-        self.batch.certain = if constant { usize::MAX } else { 0 };
+        self.batch.constant = sampling.importance().is_constant(&region);
         Ok((limit > node.rank).then_some(limit))
     }
 
@@ -234,8 +247,8 @@ impl<K: Mode> Traversal<K> {
             .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
         self.batch.start = 1;
         let mut shard = self.shard.as_mut().filter(|shard| !shard.is_in_piece(self.depth));
-        let Candidates { node, inside, certain, bound, .. } = &self.batch;
-        let constant = *certain > 0;
+        let Candidates { node, inside, constant, bound, .. } = &self.batch;
+        let constant = *constant;
         if limit <= TileCounts::HEXAGON.pair(node.level).0.saturating_add(node.rank) {
             return Ok(false);
         }
@@ -251,7 +264,7 @@ impl<K: Mode> Traversal<K> {
                 shard = None;
             }
         }
-        // Relaxed points know their ancestry that near only.
+        // The ancestry of relaxed points reaches only so many levels down.
         let near = !K::RELAXED
             || TileCounts::HEXAGON.is_within(
                 node.level,
@@ -264,40 +277,43 @@ impl<K: Mode> Traversal<K> {
             } else {
                 count_below_at_most(node, block, levels, limit)
             };
-            let certain = match constant {
-                true => end,
-                false if end < WORTH_A_BOUND || (K::RELAXED && !inside) => 0,
-                false => certain_below(sampling, (node, *bound), levels).min(end),
+            let sure = if constant {
+                end
+            } else if end < WORTH_A_BOUND || (K::RELAXED && !inside) {
+                0
+            } else {
+                sure_below(sampling, node, *bound, levels).min(end)
             };
             let few = match (constant, inside) {
                 // Whole blocks, whose vectors are looked up together.
                 (true, false) if K::RELAXED => true,
                 (_, false) => end <= FEW_AT_BORDER,
-                (_, true) => end - certain <= if self.peak { FEW_AT_PEAK } else { FEW },
+                (_, true) => end - sure <= if self.peak { FEW_AT_PEAK } else { FEW },
             };
             if levels == 1 || few {
                 let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth));
-                (self.batch.end, self.batch.certain) = (end, certain);
+                (self.batch.end, self.batch.sure) = (end, sure);
                 return Ok(taken);
             }
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
-        open.expand(sampling, &self.clip, (node, &self.ancestry), limit, *inside)?;
+        open.expand(sampling, &self.clip, node, &self.ancestry, limit, *inside)?;
         // Deeper levels are wanted, so that all children's centres are.
         let end = block.born_before(2);
         let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth + 1));
         self.depth += 1;
-        self.batch.end = end;
+        (self.batch.end, self.batch.sure) = (end, if constant { end } else { 0 });
         Ok(taken)
     }
 }
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
 /// importance is there, between its lower bound and the upper `bound`.
-fn certain_below<I: Importance>(
+fn sure_below<I: Importance>(
     sampling: &Sampling<'_, I>,
-    (node, bound): (&Node, f64),
+    node: &Node,
+    bound: f64,
     levels: usize,
 ) -> usize {
     let placement = sampling.placement();

@@ -10,7 +10,7 @@ use std::path::Path;
 use glam::DVec2;
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
-use twelvefold_files::picture::{self, Picture, Tone};
+use twelvefold_files::picture::{self, Levels, Picture, Tone};
 use twelvefold_files::progress::Progress;
 
 use crate::args::{DotGain, StippleOptions};
@@ -31,7 +31,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let plan = Plan::new(options, &picture, format)
         .map_err(|error| Failure::about(error.option(), error))?;
     let mut progress = Progress::new(plan.wish.count.number(), options.quiet);
-    let drawn = draw(format, &picture, &plan, &mut output, &mut progress);
+    let drawn = draw(format, picture, &plan, &mut output, &mut progress);
     let (points, time) = progress.finish();
     let travel = match drawn {
         Ok(travel) => travel,
@@ -42,7 +42,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
             return Err(Failure::at(&options.output, error));
         }
         Err(DotsError::Taker(error)) => return Err(Failure::about("--exact", error)),
-        Err(error) => return Err(Failure::at(&options.photo, error)),
+        Err(error) => return Err(of_photo(options, error)),
     };
     finish(options, output.commit())?;
     if !options.quiet {
@@ -74,14 +74,40 @@ fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
 
 /// Reads the photograph, which must not be blank if dots are to be drawn.
 fn read(options: &StippleOptions) -> Result<Picture, Failure> {
-    let tone = Tone { linear: options.linear, invert: options.invert };
-    let picture =
-        picture::read(&options.photo, tone).map_err(|error| Failure::at(&options.photo, error))?;
+    let picture = picture::read_layer(&options.photo, tone(options)?, options.layer.as_deref())
+        .map_err(|error| of_photo(options, error))?;
+    if !options.quiet {
+        for warning in &picture.warnings {
+            let warning = of_photo(options, format!("warning: {warning}"));
+            let _ = writeln!(io::stderr(), "twelvefold: {warning}");
+        }
+    }
     let nothing = options.points == Some(0) || options.exact == Some(0);
     if picture.total() == 0.0 && !nothing {
-        return Err(Failure::at(&options.photo, Blank { invert: options.invert }));
+        let blank = Blank { invert: options.invert, range: picture.range };
+        return Err(of_photo(options, blank));
     }
     Ok(picture)
+}
+
+/// The tone that the options ask for.
+fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
+    let plain = Levels::default();
+    let levels = Levels {
+        black: options.black.unwrap_or(plain.black),
+        white: options.white.unwrap_or(plain.white),
+        gamma: options.gamma.unwrap_or(plain.gamma),
+    };
+    if levels.black >= levels.white {
+        let reason = format!("{} is not below --white {}", levels.black, levels.white);
+        return Err(Failure::about("--black", reason));
+    }
+    Ok(Tone {
+        linear: options.linear,
+        invert: options.invert,
+        levels: (levels != plain).then_some(levels),
+        exposure: options.exposure,
+    })
 }
 
 /// Turns a picture's darkness into how many dots it should have.
@@ -100,7 +126,7 @@ fn prepare(picture: &mut Picture, options: &StippleOptions, format: Format) {
 /// Draws a picture's dots; returns how far a pen travels between them, where they were put in order for it.
 fn draw(
     format: Format,
-    picture: &Picture,
+    picture: Picture,
     plan: &Plan,
     output: &mut Output,
     progress: &mut Progress,
@@ -187,6 +213,15 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, travel: Option<f6
     remarks
 }
 
+/// A failure about the photograph, by the name that the user knows it by.
+fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
+    if options.photo.as_os_str() == "-" {
+        Failure::about("standard input", reason)
+    } else {
+        Failure::at(&options.photo, reason)
+    }
+}
+
 /// A file that could not be written is an error, unless whoever read it has had enough.
 fn finish(options: &StippleOptions, written: Result<(), OutputError>) -> Result<(), Failure> {
     match written {
@@ -231,15 +266,25 @@ impl std::error::Error for DrawError {}
 #[derive(Debug)]
 struct Blank {
     invert: bool,
+    /// Of a float file.
+    range: Option<(f64, f64)>,
 }
 
 impl fmt::Display for Blank {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(if self.invert {
-            "is all black, which leaves no place for dots; try without --invert"
-        } else {
-            "is all white, which leaves no place for dots; try --invert"
-        })
+        match self.range {
+            Some((least, greatest)) if !self.invert && least >= 1.0 => write!(
+                out,
+                "is brighter than 1, which is white, everywhere ({least:.3} to {greatest:.3}); \
+                 try --exposure {}",
+                -greatest.log2().ceil().max(1.0)
+            ),
+            _ => out.write_str(if self.invert {
+                "is all black, which leaves no place for dots; try without --invert"
+            } else {
+                "is all white, which leaves no place for dots; try --invert"
+            }),
+        }
     }
 }
 

@@ -90,7 +90,7 @@ impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
 /// # Errors
 /// [`DotsError`], and what `take` fails with.
 pub(crate) fn place<E>(
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
     mut take: impl FnMut(DVec2) -> Result<(), E>,
@@ -107,14 +107,30 @@ pub(crate) fn place<E>(
 /// # Errors
 /// [`DotsError`].
 pub(crate) fn list<E>(
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
 ) -> Result<Vec<DVec2>, DotsError<E>> {
-    let mut ranked: Vec<(f64, DVec2)> = Vec::new();
+    if wish.refine == 0 {
+        return unrefined(picture, wish);
+    }
+    let mut dots = unrefined(copy(&picture)?, wish)?;
+    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    Ok(dots)
+}
+
+/// The list of the dots as the sampling gives them, ranked if that is wished.
+fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>> {
+    let mut dots = Vec::new();
+    let mut keys: Vec<f64> = Vec::new();
     raw(picture, wish, |dot, key| {
-        let room = ranked.try_reserve(1);
-        room.map(|()| ranked.push((key, dot))).map_err(|_| ranked.len())
+        dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
+        dots.push(dot);
+        if wish.ranked {
+            keys.try_reserve(1).map_err(|_| dots.len())?;
+            keys.push(key);
+        }
+        Ok(())
     })
     .map_err(|error| match error {
         DotsError::Taker(count) => DotsError::Memory(count),
@@ -125,11 +141,9 @@ pub(crate) fn list<E>(
         DotsError::Memory(count) => DotsError::Memory(count),
     })?;
     if wish.ranked {
-        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
-    }
-    let mut dots: Vec<DVec2> = ranked.into_iter().map(|(_, dot)| dot).collect();
-    if wish.refine > 0 {
-        refined(picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+        let mut order: Vec<usize> = (0..dots.len()).collect();
+        order.sort_by(|&one, &other| keys[one].total_cmp(&keys[other]));
+        dots = order.into_iter().map(|index| dots[index]).collect();
     }
     Ok(dots)
 }
@@ -149,24 +163,25 @@ fn refined(
     refiner.write(dots)
 }
 
+/// A picture for a map, which keeps its pixels.
+fn copy<E>(picture: &Picture) -> Result<Picture, DotsError<E>> {
+    let mut importance = Vec::new();
+    let pixels = picture.importance.len();
+    importance.try_reserve_exact(pixels).map_err(|_| DotsError::Memory(pixels))?;
+    importance.extend_from_slice(&picture.importance);
+    Ok(Picture { importance, warnings: Vec::new(), ..*picture })
+}
+
 /// The dots as the sampling gives them, each with a key by which they are ranked if that is wished.
 fn raw<E>(
-    picture: &Picture,
+    Picture { width, height, importance, .. }: Picture,
     wish: Wish,
     mut take: impl FnMut(DVec2, f64) -> Result<(), E>,
 ) -> Result<(), DotsError<E>> {
-    let Picture { width, height, ref importance, .. } = *picture;
-    let pixels = || {
-        let mut copy = Vec::new();
-        copy.try_reserve_exact(importance.len())
-            .map_err(|_| DotsError::Memory(importance.len()))?;
-        copy.extend_from_slice(importance);
-        Ok(copy)
-    };
     let invalid = InvalidPixels::Reject;
     match (wish.count, wish.centers) {
         (Count::Exactly(count), _) => {
-            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let dots =
                 exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
@@ -176,13 +191,13 @@ fn raw<E>(
             })
         }
         (Count::About(count), Centers::Fixed) => {
-            let map = ImageMap::new(width, height, pixels()?, invalid).map_err(DotsError::Map)?;
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count));
             stream(&sampling.map_err(DotsError::Sampling)?, &map, wish.ranked, take)
         }
         (Count::About(count), Centers::Relaxed) => {
-            let map = StippleMap::new(width, height, pixels()?, invalid, count)
+            let map = StippleMap::new(width, height, importance, invalid, count)
                 .map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count))

@@ -46,9 +46,9 @@ fn write_table(count: usize) -> Result<(), Box<dyn std::error::Error>> {
     }
 
     // Sets of the unit square are measured inside it, so that border points have neighbours.
-    let window = Window::new(DVec2::ZERO, DVec2::ONE).shrunk(0.03);
+    let window = Window::UNIT.shrunk(0.03)?;
     let sets = |make: &dyn Fn(u64) -> Vec<DVec2>| -> Vec<Evenness> {
-        (0..SETS).filter_map(|seed| evenness(&make(seed), window)).collect()
+        (0..SETS).filter_map(|seed| evenness(&make(seed), window).ok()).collect()
     };
     let white = |seed| {
         let mut random = Random::new(seed, &[]);

@@ -1,4 +1,4 @@
-//! `twelvefold relax`: trains the relaxed offsets that `build.rs` bakes, and measures them.
+//! `twelvefold-lab train`: trains the relaxed offsets that `build.rs` bakes, and measures them.
 
 use std::fmt::Write as _;
 use std::fs;

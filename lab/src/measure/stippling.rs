@@ -14,7 +14,7 @@
 
 use glam::DVec2;
 
-use super::nearest;
+use super::{MeasureError, nearest};
 
 /// Supersampling of the ink: pixels of the rendering a pixel of the photograph, and samples in each.
 const RENDERED: usize = 2;
@@ -23,7 +23,7 @@ const SAMPLES: usize = 4;
 /// Side of the window of structural similarity.
 const WINDOW: usize = 7;
 
-/// A gray image of `f64`, row by row.
+/// A gray image of numbers in 0..=1, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gray {
     width: usize,
@@ -55,16 +55,19 @@ pub struct Stippling {
 }
 
 impl Gray {
-    /// An image of `width` pixels a row; `None` unless values are finite and fill at least one row.
-    #[must_use]
-    pub fn new(width: usize, values: Vec<f64>) -> Option<Self> {
-        let height = values.len().checked_div(width)?;
-        let whole = height > 0 && height * width == values.len();
-        (whole && values.iter().all(|value| value.is_finite())).then_some(Self {
-            width,
-            height,
-            values,
-        })
+    /// An image of `width` pixels a row, each in 0..=1.
+    ///
+    /// # Errors
+    /// [`MeasureError::NotRows`] unless the values fill whole rows, at least one;
+    /// [`MeasureError::Pixel`] for the first outside of 0..=1.
+    pub fn new(width: usize, values: Vec<f64>) -> Result<Self, MeasureError> {
+        if values.is_empty() || values.len().checked_rem(width) != Some(0) {
+            return Err(MeasureError::NotRows { width, pixels: values.len() });
+        }
+        if let Some(i) = values.iter().position(|value| !(0.0..=1.0).contains(value)) {
+            return Err(MeasureError::Pixel { x: i % width, y: i / width });
+        }
+        Ok(Self { width, height: values.len() / width, values })
     }
 
     /// Each pixel as `by` × `by` pixels.
@@ -123,14 +126,24 @@ fn mirrored(i: usize, before: usize, size: usize) -> usize {
 }
 
 /// Measures dots (pixels of the photograph, x right, y down) against the darkness, 0 to 1, of a
-/// photograph. `None` for fewer than two dots, a dot that is not finite, or a white photograph.
-/// O(dots + pixels × spacing).
-#[must_use]
-pub fn stippling(darkness: &Gray, dots: &[DVec2]) -> Option<Stippling> {
+/// photograph. The tone of a dot outside the photograph counts at its border. O(dots + pixels × spacing).
+///
+/// # Errors
+/// [`MeasureError::TooFew`] for fewer than two dots, [`MeasureError::NotFinite`] for a dot,
+/// [`MeasureError::AllZero`] for a white photograph.
+pub fn stippling(darkness: &Gray, dots: &[DVec2]) -> Result<Stippling, MeasureError> {
     let black: f64 = darkness.values.iter().sum();
-    if dots.len() < 2 || !dots.iter().all(|dot| dot.is_finite()) || black <= 0.0 {
-        return None;
+    if dots.len() < 2 {
+        return Err(MeasureError::TooFew { found: dots.len(), needed: 2 });
     }
+    if black <= 0.0 {
+        return Err(MeasureError::AllZero);
+    }
+    let distances = nearest::distances(dots, dots)?;
+    // A dot farther off than this draws as one here: no disc is as large as the photograph.
+    let far_off = DVec2::splat((darkness.width + darkness.height) as f64);
+    let drawn: Vec<DVec2> = dots.iter().map(|dot| dot.clamp(-far_off, 2.0 * far_off)).collect();
+    let dots = drawn.as_slice();
     let count = dots.len() as f64;
     let spacing = ((darkness.width * darkness.height) as f64 / count).sqrt();
 
@@ -154,7 +167,6 @@ pub fn stippling(darkness: &Gray, dots: &[DVec2]) -> Option<Stippling> {
     let ink_error = far.distance(&photograph.blurred(spacing * RENDERED as f64));
 
     let smooth = darkness.blurred(spacing);
-    let distances = nearest::distances(dots, dots);
     let pixel = |dot: DVec2| {
         let index = |c: f64, size: usize| (c.max(0.0) as usize).min(size - 1);
         index(dot.y, darkness.height) * darkness.width + index(dot.x, darkness.width)
@@ -166,7 +178,7 @@ pub fn stippling(darkness: &Gray, dots: &[DVec2]) -> Option<Stippling> {
     let relative = dots.iter().zip(&distances).map(|(dot, d)| d / hexagonal(*dot)).collect();
     let relative = nearest::Summary::new(relative)?;
     let share = |number: usize| number as f64 / count;
-    Some(Stippling {
+    Ok(Stippling {
         dots: dots.len(),
         tone,
         ink_error,
@@ -292,7 +304,8 @@ mod tests {
 
     #[test]
     fn a_blur_keeps_the_mean_and_a_constant() {
-        let gray = Gray::new(17, (0..17 * 9).map(|i| f64::from(i * 7919 % 101)).collect()).unwrap();
+        let gray = Gray::new(17, (0..17 * 9).map(|i| f64::from(i * 7919 % 101) / 101.0).collect())
+            .unwrap();
         for deviation in [0.3, 1.0, 4.0, 20.0] {
             let mean = |gray: &Gray| gray.values.iter().sum::<f64>() / gray.values.len() as f64;
             assert!((mean(&gray.blurred(deviation)) - mean(&gray)).abs() < 1e-9 * mean(&gray));
@@ -318,15 +331,21 @@ mod tests {
 
     #[test]
     fn what_cannot_be_measured_is_no_panic() {
-        assert_eq!(Gray::new(0, vec![]), None);
-        assert_eq!(Gray::new(3, vec![0.0; 4]), None);
-        assert_eq!(Gray::new(1, vec![f64::NAN]), None);
+        assert_eq!(Gray::new(0, vec![]), Err(MeasureError::NotRows { width: 0, pixels: 0 }));
+        assert_eq!(Gray::new(3, vec![0.0; 4]), Err(MeasureError::NotRows { width: 3, pixels: 4 }));
+        assert_eq!(Gray::new(1, vec![1.0, f64::NAN]), Err(MeasureError::Pixel { x: 0, y: 1 }));
         let white = Gray::new(8, vec![0.0; 64]).unwrap();
         let black = Gray::new(8, vec![1.0; 64]).unwrap();
         let dots = [DVec2::ONE, DVec2::new(-5.0, 1e9)];
-        assert_eq!(stippling(&white, &dots), None);
-        assert_eq!(stippling(&black, &dots[..1]), None);
-        assert_eq!(stippling(&black, &[DVec2::NAN, DVec2::ONE]), None);
-        assert!(stippling(&black, &dots).is_some());
+        assert_eq!(stippling(&white, &dots), Err(MeasureError::AllZero));
+        assert_eq!(
+            stippling(&black, &dots[..1]),
+            Err(MeasureError::TooFew { found: 1, needed: 2 })
+        );
+        assert_eq!(
+            stippling(&black, &[DVec2::ONE, DVec2::NAN]),
+            Err(MeasureError::NotFinite { point: 1 })
+        );
+        assert!(stippling(&black, &dots).is_ok());
     }
 }

@@ -7,14 +7,15 @@ use super::field::{Constant, Field, spacing, threshold_of_phase};
 use super::image::Image;
 use super::place::{Place, Region};
 use super::site::sites;
-use crate::measure::fidelity::{self, Fidelity, Importance};
+use crate::measure::fidelity::{self, Fidelity, Raster};
 use crate::measure::{Evenness, Window, evenness};
 use crate::random::Random;
 use twelvefold::bake::displacement::{DELTA, Displacements};
 use twelvefold::tiling::{OutOfRange, Rules};
 
 /// Points of uniform phase `tau` in a square window of about `count` of them, at a random place and
-/// angle, with a border of neighbours; relaxed by `table` or fixed.
+/// angle, with a border of neighbours; relaxed by `table` or fixed. `None` for a count that is not
+/// positive and finite.
 ///
 /// # Errors
 /// [`OutOfRange`] cannot happen for phases in [1, δ].
@@ -24,9 +25,12 @@ pub fn uniform_window(
     tau: f64,
     count: f64,
     random: &mut Random,
-) -> Result<(Vec<DVec2>, Window), OutOfRange> {
+) -> Result<Option<(Vec<DVec2>, Window)>, OutOfRange> {
     let field = Constant(threshold_of_phase(tau));
     let side = libm::sqrt(count) * spacing(field.0);
+    let Ok(window) = Window::new(DVec2::splat(-0.5 * side), DVec2::splat(side)) else {
+        return Ok(None);
+    };
     // Neighbours within 4 spacings, and 4 edges from which points may move in.
     let radius = side * core::f64::consts::FRAC_1_SQRT_2 + 4.0 * spacing(field.0) + 4.0;
     let ground = Place::random(rules, radius, random)?;
@@ -36,10 +40,10 @@ pub fn uniform_window(
         .map(|site| table.map_or(site.centre, |table| site.relaxed(table)))
         .map(|p| DVec2::new(c * p.x - s * p.y, s * p.x + c * p.y))
         .collect();
-    Ok((points, Window::new(DVec2::splat(-0.5 * side), DVec2::splat(side))))
+    Ok(Some((points, window)))
 }
 
-/// Measures uniform phases.
+/// Measures uniform phases. `None` for fewer points than [`evenness`] measures.
 ///
 /// # Errors
 /// As [`uniform_window`].
@@ -50,8 +54,8 @@ pub fn uniform(
     count: f64,
     random: &mut Random,
 ) -> Result<Option<Evenness>, OutOfRange> {
-    let (points, window) = uniform_window(rules, table, tau, count, random)?;
-    Ok(evenness(&points, window))
+    let points = uniform_window(rules, table, tau, count, random)?;
+    Ok(points.and_then(|(points, window)| evenness(&points, window).ok()))
 }
 
 /// The k-th of n phases, evenly spread in ln τ over a whole level: δ^((k + ½)/n).
@@ -150,7 +154,7 @@ pub fn worst<'a>(measured: impl IntoIterator<Item = &'a Evenness>) -> Option<Eve
 }
 
 /// The figures of an image of `count` points at phases spread over a whole level; each with the share of
-/// dots on pixels of importance 0.
+/// dots on pixels of importance 0. None for pixels that are no image, or too few points.
 ///
 /// # Errors
 /// As [`image_points`].
@@ -163,6 +167,7 @@ pub fn image_sweep(
     phases: usize,
     seed: u64,
 ) -> Result<Vec<(Fidelity, f64)>, OutOfRange> {
+    let Ok(raster) = Raster::new(width, values) else { return Ok(Vec::new()) };
     let measured = (0..phases).into_par_iter().map(|k| {
         let tau = phase(k, phases);
         let mut random = Random::new(seed, &[k as u64]);
@@ -175,9 +180,9 @@ pub fn image_sweep(
             image.map(|image| image_points(rules, None, &image, &mut random))
         };
         let Some(points) = points.transpose()? else { return Ok(None) };
-        let image = Importance { values, width };
-        Ok(fidelity::fidelity(&points, &image)
-            .map(|measured| (measured, fidelity::share_on_zero(&points, &image))))
+        Ok(fidelity::fidelity(&points, &raster)
+            .ok()
+            .map(|measured| (measured, fidelity::share_on_zero(&points, &raster))))
     });
     Ok(measured.collect::<Result<Vec<_>, OutOfRange>>()?.into_iter().flatten().collect())
 }

@@ -49,6 +49,23 @@ fn mix([a, b, c, d]: [f64; 4], [s, t]: [f64; 2]) -> f64 {
     smaller(larger(mixed, least), larger(larger(a, b), larger(c, d)))
 }
 
+/// Below this part of the greatest of four pixels, the least lies across an edge.
+pub(in crate::importance) const SAME_SIDE: f64 = 0.8;
+
+/// The value between four pixels on one side of an edge, and the nearest one's where an edge parts them.
+/// Over the square between their centres, the mean is theirs either way.
+#[inline(always)]
+fn mix_one_side([a, b, c, d]: [f64; 4], [s, t]: [f64; 2]) -> f64 {
+    let smaller = |a: f64, b: f64| if a < b { a } else { b };
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let least = smaller(smaller(a, b), smaller(c, d));
+    let most = larger(larger(a, b), larger(c, d));
+    let (above, below) = (if s < 0.5 { a } else { b }, if s < 0.5 { c } else { d });
+    let nearest = if t < 0.5 { above } else { below };
+    let mixed = mix([a, b, c, d], [s, t]);
+    if least < SAME_SIDE * most { nearest } else { mixed }
+}
+
 impl Grid {
     /// Indices of the four pixels around a point, below 2⁵², and its weights.
     #[inline(always)]
@@ -66,6 +83,17 @@ impl Grid {
     pub(in crate::importance) fn value<T: Copy + Into<f64>>(&self, plane: &[T], at: DVec2) -> f64 {
         let (corners, weights) = self.cell(at.to_array());
         mix(corners.map(|i| plane[i as usize].into()), weights)
+    }
+
+    /// The same, one side of every edge by itself.
+    #[inline]
+    pub(in crate::importance) fn value_of_side<T: Copy + Into<f64>>(
+        &self,
+        plane: &[T],
+        at: DVec2,
+    ) -> f64 {
+        let (corners, weights) = self.cell(at.to_array());
+        mix_one_side(corners.map(|i| plane[i as usize].into()), weights)
     }
 
     /// Where to read for as many of the points as fit; `None` if indices do not fit in 32 bits.
@@ -94,6 +122,26 @@ impl Cells {
     /// The values of a plane.
     #[inline(always)]
     pub(in crate::importance) fn read<T: Copy + Into<f64>>(&self, plane: &[T], values: &mut [f64]) {
+        self.read_with(plane, values, mix);
+    }
+
+    /// The same, one side of every edge by itself.
+    #[inline(always)]
+    pub(in crate::importance) fn read_side<T: Copy + Into<f64>>(
+        &self,
+        plane: &[T],
+        values: &mut [f64],
+    ) {
+        self.read_with(plane, values, mix_one_side);
+    }
+
+    #[inline(always)]
+    fn read_with<T: Copy + Into<f64>>(
+        &self,
+        plane: &[T],
+        values: &mut [f64],
+        mix: impl Fn([f64; 4], [f64; 2]) -> f64,
+    ) {
         let mut read = [[0.0; RUN]; 4];
         for (read, corners) in read.iter_mut().zip(&self.corners) {
             for (read, corner) in read[..self.len].iter_mut().zip(corners) {

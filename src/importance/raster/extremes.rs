@@ -3,11 +3,13 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use crate::importance::pixels::{MapError, filled};
+
 /// Texels reduced in one pass.
 const RUN: usize = 256;
 
 /// Levels 1, 2, … of maxima and minima over 2×2, 4×4, … pixels, down to one texel. Level 0, the
-/// pixels, unconstrained with its owner. Odd sizes round up: the last texel of a level covers what is left.
+/// pixels, stays with its owner. Odd sizes round up: the last texel of a level covers what is left.
 #[derive(Clone, Debug)]
 pub(in crate::importance) struct Extremes {
     greatest: Vec<f32>,
@@ -24,7 +26,11 @@ struct Level {
 
 impl Extremes {
     /// Reduces `pixels`, `width` × `height` of them, row by row. O(pixels), two thirds more memory.
-    pub(in crate::importance) fn new(pixels: &[f32], width: usize, height: usize) -> Self {
+    pub(in crate::importance) fn new(
+        pixels: &[f32],
+        width: usize,
+        height: usize,
+    ) -> Result<Self, MapError> {
         let mut levels = Vec::new();
         let (mut w, mut h, mut total) = (width, height, 0);
         while w > 1 || h > 1 {
@@ -32,13 +38,13 @@ impl Extremes {
             levels.push(Level { start: total, width: w, height: h });
             total += w * h;
         }
-        let texels = alloc::vec![0.0; total];
-        let mut pyramid = Self { greatest: texels.clone(), least: texels, levels };
+        let (greatest, least) = (filled(0.0, total)?, filled(0.0, total)?);
+        let mut pyramid = Self { greatest, least, levels };
         for y in 0..height.div_ceil(2) {
             pyramid.reduce_pixels(pixels, (width, height), y, &(0..width));
         }
         pyramid.reduce_above(&(0..width), &(0..height));
-        pyramid
+        Ok(pyramid)
     }
 
     /// Recomputes row `y` of level 1 where it depends on the pixels in `columns`, from two rows of
@@ -200,7 +206,7 @@ mod tests {
     fn every_texel_has_the_extremes_of_its_pixels() {
         for (width, height) in [(1, 1), (1, 9), (17, 1), (2, 2), (7, 5), (33, 64)] {
             let pixels: Vec<f32> = (0..width * height).map(|i| (i * 7919 % 1009) as f32).collect();
-            let pyramid = Extremes::new(&pixels, width, height);
+            let pyramid = Extremes::new(&pixels, width, height).unwrap();
             for shift in 0..8 {
                 let shift = shift.min(pyramid.levels.len());
                 let level = pyramid.level(&pixels, width, shift);

@@ -5,7 +5,7 @@ mod extremes;
 mod nearest;
 mod round;
 
-pub(super) use bilinear::Grid;
+pub(super) use bilinear::{Grid, SAME_SIDE};
 pub(super) use extremes::{Extremes, Texels};
 pub(super) use nearest::Lattice;
 

@@ -108,7 +108,7 @@ fn lights(options: &ReportOptions) -> Result<Vec<Lighting>, Failure> {
 /// The photograph whose tone is followed.
 fn photo(options: &ReportOptions) -> Result<ImageMap, Failure> {
     let Some(path) = &options.photo else { return Ok(tone::drawing()) };
-    let tone = Tone { linear: false, invert: false };
+    let tone = Tone { linear: false, invert: false, ..Tone::default() };
     let photo = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
     ImageMap::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
         .map_err(|error| Failure::at(path, error))

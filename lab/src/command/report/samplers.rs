@@ -3,7 +3,10 @@
 use std::sync::LazyLock;
 
 use glam::DVec2;
-use twelvefold::estimate::{Warp, Weighted, Weighting, exactly, normalise, post_stratify};
+use twelvefold::estimate::{
+    SeamlessSet, Warp, Weighted, Weighting, exactly, normalise, post_stratify,
+};
+use twelvefold::light::Sobol;
 use twelvefold::{
     Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Probed,
     Sampling,
@@ -136,7 +139,7 @@ fn sobol(i: usize, seed: u64) -> DVec2 {
 }
 
 /// The samplers of constant importance.
-pub(crate) const UNIFORM: [Uniform; 14] = [
+pub(crate) const UNIFORM: [Uniform; 15] = [
     Uniform {
         name: "ours, 1/density",
         kind: Kind::Ours,
@@ -203,6 +206,14 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
         },
     },
     Uniform {
+        name: "ours, seamless set",
+        kind: Kind::Ours,
+        make: |n, seed| {
+            let set = SeamlessSet::new(n, Limits::default()).ok()?;
+            Some(equal(set.points(seed)))
+        },
+    },
+    Uniform {
         name: "Halton, shifted",
         kind: Kind::Rival,
         make: |n, seed| Some(shifted((0..n as u32).map(halton), seed)),
@@ -259,7 +270,7 @@ pub(crate) const UNIFORM: [Uniform; 14] = [
 ];
 
 /// The samplers of a map.
-pub(crate) const FOLLOWING: [Following; 15] = [
+pub(crate) const FOLLOWING: [Following; 16] = [
     Following {
         name: "ours, 1/density",
         kind: Kind::Ours,
@@ -316,6 +327,15 @@ pub(crate) const FOLLOWING: [Following; 15] = [
         name: "ours, warped level",
         kind: Kind::Ours,
         make: |target, n, seed| target.warp.level(n, seed, Limits::default()).ok().map(set),
+    },
+    Following {
+        name: "ours, Sobol + warp",
+        kind: Kind::Ours,
+        make: |target, n, seed| {
+            let points = Sobol::new(seed);
+            let warped = |i| target.warp.weighted(DVec2::from_array(points.point(i)), n, i.into());
+            Some(set((0..n as u32).map(warped).collect()))
+        },
     },
     Following {
         name: "Owen Sobol + warp",
