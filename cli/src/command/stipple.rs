@@ -58,15 +58,6 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A failure about the photograph, by the name that the user knows it by.
-fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
-    if options.photo.as_os_str() == "-" {
-        Failure::about("standard input", reason)
-    } else {
-        Failure::at(&options.photo, reason)
-    }
-}
-
 /// Opens the output before the photograph is read: a mistake in its name shows at once.
 fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
     let path = &options.output;
@@ -99,6 +90,26 @@ fn read(options: &StippleOptions) -> Result<Picture, Failure> {
     Ok(picture)
 }
 
+/// The tone that the options ask for.
+fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
+    let plain = Levels::default();
+    let levels = Levels {
+        black: options.black.unwrap_or(plain.black),
+        white: options.white.unwrap_or(plain.white),
+        gamma: options.gamma.unwrap_or(plain.gamma),
+    };
+    if levels.black >= levels.white {
+        let reason = format!("{} is not below --white {}", levels.black, levels.white);
+        return Err(Failure::about("--black", reason));
+    }
+    Ok(Tone {
+        linear: options.linear,
+        invert: options.invert,
+        levels: (levels != plain).then_some(levels),
+        exposure: options.exposure,
+    })
+}
+
 /// Turns a picture's darkness into how many dots it should have.
 fn prepare(picture: &mut Picture, options: &StippleOptions, format: Format) {
     let paper = &options.paper;
@@ -127,7 +138,7 @@ fn draw(
     drawing.layer(&layer(plan)).map_err(failed)?;
     let mut travel = None;
     if plan.needs_list() {
-        let placed = dots::list(&picture, plan.wish, || {})?;
+        let placed = dots::list(picture, plan.wish, || {})?;
         let dots = arranged(placed, plan).map_err(DotsError::Taker)?;
         travel = Some(dots.windows(2).map(|pair| pair[0].distance(pair[1])).sum());
         dots.into_iter()
@@ -202,32 +213,21 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, travel: Option<f6
     remarks
 }
 
+/// A failure about the photograph, by the name that the user knows it by.
+fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
+    if options.photo.as_os_str() == "-" {
+        Failure::about("standard input", reason)
+    } else {
+        Failure::at(&options.photo, reason)
+    }
+}
+
 /// A file that could not be written is an error, unless whoever read it has had enough.
 fn finish(options: &StippleOptions, written: Result<(), OutputError>) -> Result<(), Failure> {
     match written {
         Err(OutputError::Io(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(|error| of_output(&options.output, error)),
     }
-}
-
-/// The tone that the options ask for.
-fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
-    let plain = Levels::default();
-    let levels = Levels {
-        black: options.black.unwrap_or(plain.black),
-        white: options.white.unwrap_or(plain.white),
-        gamma: options.gamma.unwrap_or(plain.gamma),
-    };
-    if levels.black >= levels.white {
-        let reason = format!("{} is not below --white {}", levels.black, levels.white);
-        return Err(Failure::about("--black", reason));
-    }
-    Ok(Tone {
-        linear: options.linear,
-        invert: options.invert,
-        levels: (levels != plain).then_some(levels),
-        exposure: options.exposure,
-    })
 }
 
 fn of_output(path: &Path, error: OutputError) -> Failure {

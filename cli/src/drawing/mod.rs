@@ -76,7 +76,8 @@ impl Look {
         if self.sheet.is_page() || matches!(self.mark, Mark::Line(_)) {
             return 3;
         }
-        decimal::decimals(self.spacing)
+        // At least two, in which a tap has a length.
+        decimal::decimals(self.spacing).max(2)
     }
 }
 

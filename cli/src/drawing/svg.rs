@@ -1,8 +1,8 @@
 //! Dots as strokes of an SVG file.
 //!
 //! A layer is a group as Inkscape has them, with one path in it: moves from dot to dot, relative and without
-//! idle characters, and at each dot its strokes. A disc is a stroke without length and with round caps, some
-//! 14 bytes; as a circle it would take 43.
+//! idle characters, and at each dot its strokes. A disc is a stroke of next to no length and with round caps,
+//! some 14 bytes; as a circle it would take 43.
 
 use std::io::{self, BufWriter, Write};
 
@@ -11,14 +11,11 @@ use glam::DVec2;
 use super::decimal;
 use super::{Drawing, Layer, Look};
 use crate::page::marks::Mark;
-use crate::page::sheet::Unit;
+use crate::page::sheet::{TAP, Unit};
 
 /// A path ends after so many dots, and another begins: some readers of XML take no attribute longer than ten
 /// million bytes.
 const DOTS_IN_PATH: u64 = 200_000;
-
-/// The length of the shortest stroke, in steps of a thousandth. Without any, some programs would drop it.
-const TAP: f64 = 0.01;
 
 /// An SVG file whose user unit is the photograph's pixel, or the millimeter. Streams: each dot is written when
 /// it comes.
@@ -29,9 +26,7 @@ pub(crate) struct Svg<'a, W: Write> {
     decimals: usize,
     /// 10 to the power of `decimals`.
     steps: f64,
-    /// The strokes of each dot, which end where they begin or nearly so, and how far from the dot they begin.
-    strokes: Vec<u8>,
-    offsets: [i64; 2],
+    strokes: Strokes,
     /// Where the pen is, in steps; dots in the path; layers so far.
     pen: [i64; 2],
     dots: u64,
@@ -66,14 +61,13 @@ impl<'a, W: Write> Svg<'a, W> {
         }
         let decimals = look.decimals();
         let steps = 10f64.powi(decimals as i32);
-        let (strokes, left) = strokes(&look.mark, decimals, steps);
+        let strokes = Strokes::of(&look.mark, decimals, steps);
         Ok(Self {
             out,
             look,
             decimals,
             steps,
             strokes,
-            offsets: [-left, 0],
             pen: [0; 2],
             dots: 0,
             layers: 0,
@@ -91,57 +85,66 @@ impl<'a, W: Write> Svg<'a, W> {
     }
 }
 
-/// What is drawn at a dot, from the place to the left of it where it begins: how many steps that is.
-fn strokes(mark: &Mark, decimals: usize, steps: f64) -> (Vec<u8>, i64) {
-    let mut text = Vec::new();
-    let number = |text: &mut Vec<u8>, number: i64| decimal::push(text, number, decimals);
-    match mark {
-        Mark::Disc(_) => text.extend_from_slice(b"h0"),
-        Mark::Tap(_) => {
-            text.push(b'h');
-            decimal::push(&mut text, (TAP * steps).round().max(1.0) as i64, decimals);
-        }
-        Mark::Ring { radii, .. } => {
-            let radii: Vec<i64> =
-                radii.iter().map(|radius| (radius * steps).round() as i64).collect();
-            let left = radii.first().copied().unwrap_or(0);
-            for (k, &radius) in radii.iter().enumerate() {
-                if k > 0 {
-                    // From one circle's left to that of the next.
-                    text.push(b'm');
-                    number(&mut text, radii[k - 1] - radius);
-                    text.extend_from_slice(b" 0");
-                }
-                if radius == 0 {
-                    text.extend_from_slice(b"h0");
-                    continue;
-                }
-                for across in [2 * radius, -2 * radius] {
-                    text.push(b'a');
-                    number(&mut text, radius);
-                    text.push(b' ');
-                    number(&mut text, radius);
-                    text.extend_from_slice(b" 0 1 0 ");
-                    number(&mut text, across);
-                    text.extend_from_slice(b" 0");
-                }
-            }
-            return (text, left);
-        }
-        Mark::Line(_) => {}
-    }
-    (text, 0)
+/// What is drawn at a dot, in steps.
+#[derive(Debug, Default)]
+struct Strokes {
+    text: Vec<u8>,
+    /// Where it begins and ends, to the right of the dot.
+    begin: i64,
+    end: i64,
 }
 
-/// How far to the right of where it begins a dot's stroke ends, in steps.
-fn end(mark: &Mark, steps: f64) -> i64 {
-    match mark {
-        Mark::Tap(_) => (TAP * steps).round().max(1.0) as i64,
-        Mark::Ring { radii, .. } => {
-            let step = |radius: Option<&f64>| (radius.unwrap_or(&0.0) * steps).round() as i64;
-            step(radii.first()) - step(radii.last())
+impl Strokes {
+    fn of(mark: &Mark, decimals: usize, steps: f64) -> Self {
+        let mut strokes = Self::default();
+        match mark {
+            Mark::Disc(_) | Mark::Tap(_) => strokes.tap(decimals, steps),
+            Mark::Ring { radii, .. } => {
+                let radii = radii.iter().map(|radius| (radius * steps).round() as i64);
+                for (k, radius) in radii.enumerate() {
+                    if k == 0 {
+                        strokes.begin = -radius;
+                    } else {
+                        // From where the last circle began to where this one begins.
+                        strokes.push("m", &[-radius - strokes.end, 0], decimals);
+                    }
+                    strokes.end = -radius;
+                    if radius == 0 {
+                        strokes.tap(decimals, steps);
+                    } else {
+                        strokes.half_circle(radius, 2 * radius, decimals);
+                        strokes.half_circle(radius, -2 * radius, decimals);
+                    }
+                }
+            }
+            Mark::Line(_) => {}
         }
-        Mark::Disc(_) | Mark::Line(_) => 0,
+        strokes
+    }
+
+    fn push(&mut self, command: &str, numbers: &[i64], decimals: usize) {
+        self.text.extend_from_slice(command.as_bytes());
+        for (k, &number) in numbers.iter().enumerate() {
+            if k > 0 && number >= 0 {
+                self.text.push(b' ');
+            }
+            decimal::push(&mut self.text, number, decimals);
+        }
+    }
+
+    fn tap(&mut self, decimals: usize, steps: f64) {
+        let length = (TAP * steps).round() as i64;
+        self.push("h", &[length], decimals);
+        self.end += length;
+    }
+
+    fn half_circle(&mut self, radius: i64, across: i64, decimals: usize) {
+        self.push("a", &[radius, radius], decimals);
+        self.text.extend_from_slice(b" 0 1 0");
+        if across >= 0 {
+            self.text.push(b' ');
+        }
+        self.push("", &[across, 0], decimals);
     }
 }
 
@@ -171,10 +174,9 @@ impl<W: Write> Drawing for Svg<'_, W> {
         if self.dots == DOTS_IN_PATH && !line {
             self.end_path()?;
         }
-        let [left, up] = self.offsets;
         let step = |t: f64| (t * self.steps).round() as i64;
-        let [x, y] = [step(at.x) + left, step(at.y) + up];
-        let (across, down) = (x - self.pen[0], y - self.pen[1]);
+        let [x, y] = [step(at.x), step(at.y)];
+        let (across, down) = (x + self.strokes.begin - self.pen[0], y - self.pen[1]);
         self.text.clear();
         let command: &[u8] = match (self.dots, line) {
             (0, _) => b"<path d=\"M",
@@ -188,9 +190,9 @@ impl<W: Write> Drawing for Svg<'_, W> {
             self.text.push(b' ');
         }
         decimal::push(&mut self.text, down, self.decimals);
-        self.text.extend_from_slice(&self.strokes);
+        self.text.extend_from_slice(&self.strokes.text);
         self.out.write_all(&self.text)?;
-        self.pen = [x + end(&self.look.mark, self.steps), y];
+        self.pen = [x + self.strokes.end, y];
         self.dots += 1;
         Ok(())
     }
@@ -257,7 +259,7 @@ mod tests {
              <rect width=\"40\" height=\"30\" fill=\"white\"/>\n\
              <g inkscape:groupmode=\"layer\" inkscape:label=\"a &quot;b&quot;\" id=\"layer1\" \
              fill=\"none\" stroke=\"white\" stroke-width=\"3.250\" stroke-linecap=\"round\" \
-             stroke-linejoin=\"round\">\n<path d=\"M0 30h0\nm12.35-24h0\"/>\n</g>\n</svg>\n"
+             stroke-linejoin=\"round\">\n<path d=\"M0 30h.01\nm12.34-24h.01\"/>\n</g>\n</svg>\n"
         );
     }
 
@@ -268,14 +270,14 @@ mod tests {
         let dot = DotWidth::Millimeters(1.0);
         let sheet = Sheet::of_page(DVec2::new(10.0, 8.0), &page, dot).unwrap();
         for (mark, path) in [
-            (Mark::Disc(1.0), "M10 20h0\nm1.5-2h0"),
+            (Mark::Disc(1.0), "M10 20h.01\nm1.49-2h.01"),
             (Mark::Tap(0.3), "M10 20h.01\nm1.49-2h.01"),
             (Mark::Line(0.3), "M10 20\nl1.5-2"),
             (
                 Mark::ring(0.5, 0.3),
-                "M9.9 20a.1 .1 0 1 0 .2 0a.1 .1 0 1 0 -.2 0\nm1.5-2a.1 .1 0 1 0 .2 0a.1 .1 0 1 0 -.2 0",
+                "M9.9 20a.1 .1 0 1 0 .2 0a.1 .1 0 1 0-.2 0\nm1.5-2a.1 .1 0 1 0 .2 0a.1 .1 0 1 0-.2 0",
             ),
-            (Mark::ring(0.9, 0.3), "M9.7 20a.3 .3 0 1 0 .6 0a.3 .3 0 1 0 -.6 0m.3 0h0\nm1.2-2a"),
+            (Mark::ring(0.9, 0.3), "M9.7 20a.3 .3 0 1 0 .6 0a.3 .3 0 1 0-.6 0m.3 0h.01\nm1.19-2a"),
         ] {
             let look = Look { sheet, mark, ground_drawn: false, ..Look::of_pixels(1, 1, 1.0, 1.0) };
             let text = drawn(&look, &[(10.0, 20.0), (11.5, 18.0)]);
@@ -289,6 +291,6 @@ mod tests {
     fn a_path_is_no_longer_than_readers_take() {
         let look = Look::of_pixels(40, 30, 1.0, 1.0);
         let dots = vec![(1.0, 2.0); DOTS_IN_PATH as usize + 1];
-        assert_eq!(drawn(&look, &dots).matches("<path d=\"M1 2h0").count(), 2);
+        assert_eq!(drawn(&look, &dots).matches("<path d=\"M1 2h.01").count(), 2);
     }
 }

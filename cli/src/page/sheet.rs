@@ -9,6 +9,9 @@ use super::length::PageSize;
 /// Steps of coordinates on a page, in a millimeter: finer than any plotter.
 pub(crate) const STEPS: f64 = 1e3;
 
+/// The length of a dot's stroke, in the sheet's unit: too short to see, but programs drop those without any.
+pub(crate) const TAP: f64 = 0.01;
+
 /// What a sheet measures in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
@@ -101,8 +104,8 @@ impl Sheet {
             DotWidth::Millimeters(dot) => ((room - dot) / photograph).min_element(),
             DotWidth::Pixels(dot) => (room / (photograph + dot)).min_element(),
         };
-        // A picture smaller than the steps of coordinates is none.
-        if pixel * photograph.min_element() * STEPS < 1.0 {
+        // A picture no larger than the strokes of its dots is none.
+        if pixel * photograph.min_element() < 2.0 * TAP {
             return Err(NoRoom { size, margin });
         }
         let corner = 0.5 * (size - pixel * photograph);
@@ -127,9 +130,11 @@ impl Sheet {
         }
     }
 
-    /// The upper left and lower right corner of where dots' centers may lie.
+    /// The upper left and lower right corner of where dots' centers may lie. On a page, their strokes, which
+    /// go to the right, end on the photograph too.
     pub(crate) fn picture(&self) -> [DVec2; 2] {
-        [self.corner, self.corner + self.pixel * self.photograph]
+        let end = self.corner + self.pixel * self.photograph;
+        [self.corner, if self.is_page() { end - DVec2::new(TAP, 0.0) } else { end }]
     }
 
     /// Where on the sheet a place of the photograph is: on a page rounded to its steps and in the picture,
@@ -219,6 +224,7 @@ mod tests {
                     DotWidth::Pixels(dot) => dot * sheet.pixel(),
                 };
                 let [low, high] = sheet.picture();
+                let high = high + DVec2::new(TAP, 0.0);
                 let border = (low - radius).min(size.size - high - radius) - margin;
                 prop_assert!(border.min_element().abs() < 1e-9, "{border}");
                 prop_assert!(((high - low) / photograph - sheet.pixel()).abs().max_element() < 1e-9);

@@ -98,7 +98,7 @@ pub(crate) fn place<E>(
     if wish.refine == 0 && !wish.ranked {
         return raw(picture, wish, |dot, _| take(dot));
     }
-    let dots = list(&picture, wish, iteration)?;
+    let dots = list(picture, wish, iteration)?;
     dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
 }
 
@@ -107,14 +107,30 @@ pub(crate) fn place<E>(
 /// # Errors
 /// [`DotsError`].
 pub(crate) fn list<E>(
-    picture: &Picture,
+    picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
 ) -> Result<Vec<DVec2>, DotsError<E>> {
-    let mut ranked: Vec<(f64, DVec2)> = Vec::new();
-    raw(copy(picture)?, wish, |dot, key| {
-        let room = ranked.try_reserve(1);
-        room.map(|()| ranked.push((key, dot))).map_err(|_| ranked.len() + 1)
+    if wish.refine == 0 {
+        return unrefined(picture, wish);
+    }
+    let mut dots = unrefined(copy(&picture)?, wish)?;
+    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    Ok(dots)
+}
+
+/// The list of the dots as the sampling gives them, ranked if that is wished.
+fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>> {
+    let mut dots = Vec::new();
+    let mut keys: Vec<f64> = Vec::new();
+    raw(picture, wish, |dot, key| {
+        dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
+        dots.push(dot);
+        if wish.ranked {
+            keys.try_reserve(1).map_err(|_| dots.len())?;
+            keys.push(key);
+        }
+        Ok(())
     })
     .map_err(|error| match error {
         DotsError::Taker(count) => DotsError::Memory(count),
@@ -125,11 +141,9 @@ pub(crate) fn list<E>(
         DotsError::Memory(count) => DotsError::Memory(count),
     })?;
     if wish.ranked {
-        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
-    }
-    let mut dots: Vec<DVec2> = ranked.into_iter().map(|(_, dot)| dot).collect();
-    if wish.refine > 0 {
-        refined(picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+        let mut order: Vec<usize> = (0..dots.len()).collect();
+        order.sort_by(|&one, &other| keys[one].total_cmp(&keys[other]));
+        dots = order.into_iter().map(|index| dots[index]).collect();
     }
     Ok(dots)
 }
