@@ -22,7 +22,7 @@ fn scattered(side: u32) -> Vec<DVec2> {
         (state >> 40) as f64 / (1u64 << 24) as f64
     };
     (0..side * side)
-        .map(|i| DVec2::new((i % side) as f64 + random(), (i / side) as f64 + random()))
+        .map(|i| DVec2::new(f64::from(i % side) + random(), f64::from(i / side) + random()))
         .collect()
 }
 
