@@ -126,25 +126,3 @@ proptest! {
         prop_assert!(!meets_itself(&drawn), "{:?}", drawn);
     }
 }
-
-#[test]
-#[ignore = "measures: reads x,y lines from /tmp/paperout/in.csv"]
-fn measure_file() {
-    let text = std::fs::read_to_string("/tmp/paperout/in.csv").unwrap();
-    let mut dots: Vec<DVec2> = text
-        .lines()
-        .skip(1)
-        .map(|l| {
-            let (x, y) = l.split_once(',').unwrap();
-            DVec2::new(x.parse().unwrap(), y.parse().unwrap())
-        })
-        .collect();
-    println!("{} before {}", dots.len(), length(&dots));
-    let mut other = dots.clone();
-    let t = std::time::Instant::now();
-    short(&mut dots);
-    println!("short {} in {:?}", length(&dots), t.elapsed());
-    let t = std::time::Instant::now();
-    line(&mut other);
-    println!("line {} {} in {:?}", other.len(), length(&other), t.elapsed());
-}
