@@ -11,7 +11,8 @@ use crate::{complaint_about, names, photograph, program, stipple};
 fn other_endings_are_refused_before_the_photograph_is_read() {
     for name in ["dots.jpg", "dots", "dots.svg.gz", ".svg"] {
         let output = stipple("/no/such/photograph".as_ref(), &["-o", name]);
-        assert_eq!(complaint_about(name, &output), "has none of the endings .svg, .png and .csv");
+        let expected = "has none of the endings .svg, .png, .pdf, .csv and .npy; see --format";
+        assert_eq!(complaint_about(name, &output), expected);
     }
 }
 
