@@ -254,7 +254,7 @@ impl Importance for StippleMap {
 
     fn longest_constraint(&self) -> f64 {
         // Back across the edge, and to within a pixel.
-        self.scales.largest.max(1.0)
+        self.scales.largest.max(1.0) + 2.0 * PIXEL_BORDER
     }
 }
 

@@ -75,6 +75,18 @@ impl Cone {
     }
 }
 
+impl<M: Borrow<EnvironmentMap>> LightSampler<M> {
+    /// The same light for a surface that faces `normal`, of any length above 0: directions below its
+    /// horizon are not sampled, and grazing ones seldom. `None` if no light comes from above the
+    /// horizon, and for a normal without length.
+    ///
+    /// Costs some microseconds and allocates; see [`FacingSampler`].
+    #[must_use]
+    pub fn facing(&self, normal: DVec3) -> Option<FacingSampler<'_, M>> {
+        FacingSampler::new(self, normal)
+    }
+}
+
 impl<'s, M: Borrow<EnvironmentMap>> FacingSampler<'s, M> {
     pub(super) fn new(lights: &'s LightSampler<M>, normal: DVec3) -> Option<Self> {
         let sums = lights.sums();

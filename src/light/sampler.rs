@@ -6,7 +6,6 @@ use core::borrow::Borrow;
 use glam::{DVec2, DVec3};
 
 use super::bilinear::{self, Patch};
-use super::facing::FacingSampler;
 use super::sobol::Sobol;
 use crate::estimate::sums::{Cell, SumPyramid};
 use crate::importance::{EnvironmentMap, EnvironmentSample, importance_of};
@@ -113,16 +112,6 @@ impl<M: Borrow<EnvironmentMap>> LightSampler<M> {
             Filter::Bilinear => Patch::new(self.map(), column, row).trace(at),
         };
         Some(self.sums.trace(self.pixels(), self.sums.top(), (column, row, at)).to_array())
-    }
-
-    /// The same light for a surface that faces `normal`, of any length above 0: directions below its
-    /// horizon are not sampled, and grazing ones seldom. `None` if no light comes from above the
-    /// horizon, and for a normal without length.
-    ///
-    /// Costs some microseconds and allocates; see [`FacingSampler`].
-    #[must_use]
-    pub fn facing(&self, normal: DVec3) -> Option<FacingSampler<'_, M>> {
-        FacingSampler::new(self, normal)
     }
 
     pub(super) fn sums(&self) -> &SumPyramid {

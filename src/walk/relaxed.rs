@@ -162,9 +162,21 @@ impl<I: Importance> Displacer<'_, '_, I> {
         };
         let frames = [frame(0), frame(1), frame(2)];
         let len = chunk.len.min(CHUNK);
+        let free = self.nothing_constrains();
         for start in (0..len).step_by(RUN) {
-            self.move_run(chunk, start..len.min(start + RUN), &formulas, &frames);
+            self.move_run(chunk, start..len.min(start + RUN), &formulas, &frames, free);
         }
+    }
+
+    /// Whether points of the batch may go anywhere: the importance is nowhere 0 where they can.
+    #[inline(always)]
+    fn nothing_constrains(&self) -> bool {
+        let (sampling, node) = (self.sampling, &self.batch.node);
+        let (placement, importance) = (sampling.placement(), sampling.importance());
+        let centre = placement.domain().min() + placement.centre(node);
+        let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
+        importance.longest_constraint() <= 0.0
+            && importance.lower_bound(&Disc { centre, radius }) > 0.0
     }
 
     /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
@@ -177,6 +189,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         run: Range<usize>,
         formulas: &[ClassFormula; 3],
         frames: &[EdgeFrame<S>; 3],
+        free: bool,
     ) {
         let Self { sampling, batch, .. } = *self;
         let (placement, scale) = (sampling.placement(), sampling.scale());
@@ -245,7 +258,14 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 [dx[k], dy[k]] = self.step(chunk, run.start + k);
             }
         }
-        self.constrain(chunk, run, &dx, &dy);
+        if free {
+            let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
+            for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
+                (*x, *y) = (*x + *dx, *y + *dy);
+            }
+        } else {
+            self.constrain(chunk, run, &dx, &dy);
+        }
     }
 
     /// Moves points by steps, or to where the importance lets them go.
@@ -264,28 +284,18 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let len = run.len().min(RUN);
         // Where the points are moved, or the nearest place in the domain: out of it they end.
         let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
-        let (mut low, mut high) = (self.high, self.low);
         for k in 0..len {
             let i = run.start + k;
             let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
             [at_x[k], at_y[k]] = moved.to_array();
-            (low, high) = (low.min(moved), high.max(moved));
         }
-        let mut unconstrained = [1u8; RUN];
-        let radius = 0.5 * (high - low).length() * (1.0 + 1e-9);
-        let all = Disc { centre: 0.5 * (low + high), radius };
-        if importance.longest_constraint() > 0.0 || importance.lower_bound(&all) <= 0.0 {
-            for (k, needed) in needed[..len].iter_mut().enumerate() {
-                let entry = chunk.entry[run.start + k].into();
-                *needed = scale.importance_of(self.batch.rank(block, entry));
-            }
-            importance.unconstrained(
-                &at_x[..len],
-                &at_y[..len],
-                &needed[..len],
-                &mut unconstrained[..len],
-            );
+        for (k, needed) in needed[..len].iter_mut().enumerate() {
+            let entry = chunk.entry[run.start + k].into();
+            *needed = scale.importance_of(self.batch.rank(block, entry));
         }
+        let mut unconstrained = [0u8; RUN];
+        let to = &mut unconstrained[..len];
+        importance.unconstrained(&at_x[..len], &at_y[..len], &needed[..len], to);
         for k in 0..len {
             let i = run.start + k;
             let (x, y) = (chunk.x[i], chunk.y[i]);
