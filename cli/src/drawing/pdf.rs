@@ -53,7 +53,7 @@ impl<'a, W: Write> Pdf<'a, W> {
         let mut content = ZlibEncoder::new(Vec::new(), Compression::default());
         if look.ground_drawn {
             let color = ink(look.ground);
-            write!(content, "{color} rg 0 0 {} {} re f\n", real(size.x), real(size.y))?;
+            writeln!(content, "{color} rg 0 0 {} {} re f", real(size.x), real(size.y))?;
         }
         // From here on in steps, from the upper left corner down; strokes with round caps and joins.
         let step = real(points / steps);

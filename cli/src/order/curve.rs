@@ -30,7 +30,7 @@ fn distance(mut x: u32, mut y: u32) -> u64 {
     for level in (0..LEVELS).rev() {
         let (right, down) = (x >> level & 1, y >> level & 1);
         // Quarters are visited in the order 00, 01, 11, 10 …
-        distance = distance << 2 | u64::from(3 * right ^ down);
+        distance = distance << 2 | u64::from((3 * right) ^ down);
         // … and the first and the last of them lie on their sides.
         if down == 0 {
             if right == 1 {

@@ -22,7 +22,7 @@ fn scattered(side: u32) -> Vec<DVec2> {
         (state >> 40) as f64 / (1u64 << 24) as f64
     };
     (0..side * side)
-        .map(|i| DVec2::new((i % side) as f64 + random(), (i / side) as f64 + random()))
+        .map(|i| DVec2::new(f64::from(i % side) + random(), f64::from(i / side) + random()))
         .collect()
 }
 
@@ -125,26 +125,4 @@ proptest! {
         prop_assert_eq!(drawn.len(), different.len());
         prop_assert!(!meets_itself(&drawn), "{:?}", drawn);
     }
-}
-
-#[test]
-#[ignore = "measures: reads x,y lines from /tmp/paperout/in.csv"]
-fn measure_file() {
-    let text = std::fs::read_to_string("/tmp/paperout/in.csv").unwrap();
-    let mut dots: Vec<DVec2> = text
-        .lines()
-        .skip(1)
-        .map(|l| {
-            let (x, y) = l.split_once(',').unwrap();
-            DVec2::new(x.parse().unwrap(), y.parse().unwrap())
-        })
-        .collect();
-    println!("{} before {}", dots.len(), length(&dots));
-    let mut other = dots.clone();
-    let t = std::time::Instant::now();
-    short(&mut dots);
-    println!("short {} in {:?}", length(&dots), t.elapsed());
-    let t = std::time::Instant::now();
-    line(&mut other);
-    println!("line {} {} in {:?}", other.len(), length(&other), t.elapsed());
 }

@@ -82,7 +82,7 @@ impl Sheet {
         let given = page.size.size;
         let (short, long) = (given.min_element(), given.max_element());
         let (upright, lying) = (DVec2::new(short, long), DVec2::new(long, short));
-        let best = match (page.landscape, page.size.turns) {
+        match (page.landscape, page.size.turns) {
             (true, _) => Self::of_size(photograph, lying, page, dot),
             (false, false) => Self::of_size(photograph, given, page, dot),
             (false, true) => {
@@ -92,8 +92,7 @@ impl Sheet {
                     [upright, _] => upright,
                 }
             }
-        };
-        best
+        }
     }
 
     fn of_size(photograph: DVec2, size: DVec2, page: &Page, dot: DotWidth) -> Result<Self, NoRoom> {
