@@ -141,7 +141,7 @@ proptest! {
         let unit: Vec<f64> =
             values.iter().map(|v| if kind { v.abs().clamp(0.0, 1.0) } else { *v }).collect();
         let single: Vec<f32> = unit.iter().map(|v| *v as f32).collect();
-        let rows = width > 0 && !unit.is_empty() && unit.len() % width == 0;
+        let rows = width > 0 && !unit.is_empty() && unit.len().is_multiple_of(width);
         let raster = Raster::new(width, &single);
         let fit = single.iter().all(|v| *v >= 0.0 && v.is_finite());
         prop_assert_eq!(raster.is_ok(), rows && fit);

@@ -204,9 +204,9 @@ mod linux {
         large.to_rgb8().save(&photo).unwrap();
         // Refined dots need a list of them, and some numbers a pixel more.
         for (name, refine, kilobytes) in [
-            ("dots.csv", "0", 409_600),
-            ("dots.svg", "0", 409_600),
-            ("dots.png", "0", 409_600),
+            ("dots.csv", "0", 614_400),
+            ("dots.svg", "0", 614_400),
+            ("dots.png", "0", 614_400),
             ("refined.svg", "1", 614_400),
         ] {
             let target = folder.path().join(name);
