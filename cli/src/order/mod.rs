@@ -17,8 +17,8 @@ use glam::DVec2;
 pub(crate) use near::Grid;
 use tour::Tour;
 
-/// Sorts dots so that the way from the first to the last is short: some 5 % above the shortest closed tour
-/// through evenly spread dots. Begins near the least coordinates. About 30 microseconds a dot.
+/// Sorts dots so that the way from the first to the last is short: some 3 to 7 % above the shortest closed tour
+/// through evenly spread dots. Begins near the least coordinates. About 2 microseconds a dot, up to a million.
 pub(crate) fn short(dots: &mut [DVec2]) {
     let mut tour = Tour::new(curve::along(dots));
     improve::improve(&mut tour, dots);

@@ -49,12 +49,12 @@ pub(crate) struct PaperOptions {
     /// Draw one line through all dots that never crosses itself.
     ///
     /// Its dots follow the square of the darkness, so that the line, which is as long as the root of the
-    /// number of dots in an area, has the picture's tone. About 50 microseconds a dot; at most 1,000,000.
+    /// number of dots in an area, has the picture's tone. About 5 microseconds a dot; at most 1,000,000.
     #[arg(long, conflicts_with_all = ["marks", "order", "dot_gain", "exact"])]
     pub(crate) line: bool,
 
     /// The order of the dots in the file: `short`, so that a pen travels little between them, which takes
-    /// about 30 microseconds a dot, for at most 10,000,000; `rank`, of which each beginning is itself a good
+    /// about 2 microseconds a dot, for at most 10,000,000; `rank`, of which each beginning is itself a good
     /// stippling; `none`, as the tiling gives them, which is all that is done for more than 2,000,000 dots.
     ///
     /// [default: short with `--pen`, `--marks tap` or `--marks ring` up to 1,000,000 dots; else none]

@@ -82,7 +82,6 @@ impl Sheet {
         let given = page.size.size;
         let (short, long) = (given.min_element(), given.max_element());
         let (upright, lying) = (DVec2::new(short, long), DVec2::new(long, short));
-
         match (page.landscape, page.size.turns) {
             (true, _) => Self::of_size(photograph, lying, page, dot),
             (false, false) => Self::of_size(photograph, given, page, dot),
