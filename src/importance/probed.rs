@@ -62,26 +62,14 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.integral(domain)
     }
 
-    fn local(&self, at: DVec2, value: f64) -> f64 {
-        self.importance.local(at, value)
-    }
-
-    fn detail(&self, at: DVec2) -> f64 {
-        self.importance.detail(at)
-    }
-
     #[inline(always)]
     fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
         self.importance.surroundings(x, y, local, detail);
     }
 
-    fn constrain(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        self.importance.constrain(center, moved, needed)
-    }
-
     #[inline(always)]
-    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
-        self.importance.unconstrained(x, y, needed, unconstrained);
+    fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
+        self.importance.constrain(centers, needed, moved);
     }
 
     fn longest_constraint(&self) -> f64 {

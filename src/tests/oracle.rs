@@ -60,7 +60,7 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
                     let moved = fixed + step(sampling, table, at, value, &path);
                     let needed = sampling.scale().importance_of(rank);
                     match domain.contains(moved) {
-                        true => sampling.importance().constrain(at, moved, needed),
+                        true => constrained(sampling.importance(), at, moved, needed),
                         false => moved,
                     }
                 }
@@ -109,6 +109,14 @@ fn starts<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<Found> {
         .collect()
 }
 
+/// Where the importance lets one point go.
+fn constrained(importance: &impl Importance, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+    let ([mut x], [mut y]) = ([moved.x], [moved.y]);
+    let to = [core::slice::from_mut(&mut x), core::slice::from_mut(&mut y)];
+    importance.constrain([&[center.x], &[center.y]], &[needed], to);
+    DVec2::new(x, y)
+}
+
 /// The vector by which a point is moved, by the reference lookup.
 fn step<I: Importance>(
     sampling: &Sampling<'_, I>,
@@ -123,10 +131,11 @@ fn step<I: Importance>(
     if level < FIRST_RELAXED_LEVEL.into() {
         return DVec2::ZERO;
     }
-    let local = sampling.scale().threshold(sampling.importance().local(at, value));
+    let (mut local, mut detail) = ([value], [0.0]);
+    sampling.importance().surroundings(&[at.x], &[at.y], &mut local, &mut detail);
+    let local = sampling.scale().threshold(local[0]);
     let tau = (local * (1.0 / counts[level - 1] as f64)).clamp(1.0, 7.0 + 4.0 * SQRT_3);
-    let detail = sampling.importance().detail(at);
-    let [x, y] = table.vector(&path[level].0, tau, detail);
+    let [x, y] = table.vector(&path[level].0, tau, detail[0]);
     // From the grandparent's frame to the great-grandparent's, in single precision; from there to the
     // domain's.
     let (grand, great) = (path[level - 2].1, path[level - 3].1);

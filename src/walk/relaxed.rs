@@ -143,9 +143,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
-        let local = self.sampling.scale().threshold(importance.local(at, value));
-        let detail = if self.displacements.has_rough() { importance.detail(at) } else { 0.0 };
-        ((local * per_tile).clamp(1.0, DELTA), detail)
+        let (mut local, mut detail) = ([value], [0.0]);
+        importance.surroundings(&[at.x], &[at.y], &mut local, &mut detail);
+        let phase = (self.sampling.scale().threshold(local[0]) * per_tile).clamp(1.0, DELTA);
+        (phase, if self.displacements.has_rough() { detail[0] } else { 0.0 })
     }
 
     /// Moves all points of a packed chunk, a run at a time.
@@ -282,31 +283,32 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let corner = placement.domain().min();
         let block = self.batch.block(placement);
         let len = run.len().min(RUN);
-        // Where the points are moved, or the nearest place in the domain: out of it they end.
+        // Where the points come from and are moved to, or the nearest place in the domain: those that are
+        // moved out of it end out of it.
+        let (mut from_x, mut from_y) = ([0.0; RUN], [0.0; RUN]);
         let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
         for k in 0..len {
             let i = run.start + k;
-            let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
-            [at_x[k], at_y[k]] = moved.to_array();
+            let (x, y) = (chunk.x[i], chunk.y[i]);
+            [from_x[k], from_y[k]] = self.nearest(x, y).to_array();
+            (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
+            [at_x[k], at_y[k]] = self.nearest(chunk.x[i], chunk.y[i]).to_array();
         }
         for (k, needed) in needed[..len].iter_mut().enumerate() {
             let entry = chunk.entry[run.start + k].into();
             *needed = scale.importance_of(self.batch.rank(block, entry));
         }
-        let mut unconstrained = [0u8; RUN];
-        let to = &mut unconstrained[..len];
-        importance.unconstrained(&at_x[..len], &at_y[..len], &needed[..len], to);
+        let (moved_x, moved_y) = (at_x, at_y);
+        let to = [&mut at_x[..len], &mut at_y[..len]];
+        importance.constrain([&from_x[..len], &from_y[..len]], &needed[..len], to);
         for k in 0..len {
             let i = run.start + k;
-            let (x, y) = (chunk.x[i], chunk.y[i]);
-            (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
-            if unconstrained[k] == 0 {
-                let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-                if moved == DVec2::new(at_x[k], at_y[k]) {
-                    let settled = importance.constrain(self.nearest(x, y), moved, needed[k]);
-                    if settled != moved {
-                        [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
-                    }
+            let (moved, settled) =
+                (DVec2::new(moved_x[k], moved_y[k]), DVec2::new(at_x[k], at_y[k]));
+            if settled != moved {
+                let place = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+                if place == moved {
+                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
                 }
             }
         }

@@ -92,6 +92,16 @@ impl<I: Importance> Image<I> {
     }
 }
 
+impl<I: Importance> Image<I> {
+    /// The local importance and the detail at a place.
+    fn surroundings(&self, p: DVec2) -> (f64, f64) {
+        let at = self.pixels(p);
+        let (mut local, mut detail) = ([self.importance.value(at)], [0.0]);
+        self.importance.surroundings(&[at.x], &[at.y], &mut local, &mut detail);
+        (local[0], detail[0])
+    }
+}
+
 impl<I: Importance + Sync> Field for Image<I> {
     fn threshold(&self, p: DVec2) -> f64 {
         self.importance.value(self.pixels(p)) * self.threshold_of_one
@@ -105,18 +115,20 @@ impl<I: Importance + Sync> Field for Image<I> {
     }
 
     fn local(&self, p: DVec2) -> f64 {
-        let at = self.pixels(p);
-        self.importance.local(at, self.importance.value(at)) * self.threshold_of_one
+        self.surroundings(p).0 * self.threshold_of_one
     }
 
     fn detail(&self, p: DVec2) -> f64 {
-        self.importance.detail(self.pixels(p))
+        self.surroundings(p).1
     }
 
     fn settle(&self, center: DVec2, rank: u64, moved: DVec2) -> DVec2 {
         let there = self.pixels(moved);
         let needed = rank as f64 / self.threshold_of_one;
-        let settled = self.importance.constrain(self.pixels(center), there, needed);
+        let (center, [mut x], [mut y]) = (self.pixels(center), [there.x], [there.y]);
+        let to = [&mut x, &mut y].map(std::slice::from_mut);
+        self.importance.constrain([&[center.x], &[center.y]], &[needed], to);
+        let settled = DVec2::new(x, y);
         if settled == there { moved } else { (settled - 0.5 * self.extent) / self.scale }
     }
 }
