@@ -8,7 +8,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::Vec2;
-use twelvefold::{Amount, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Sampling};
+use twelvefold::{
+    Amount, ImageMap, InvalidPixels, PixelData, PixelView, Pixels, Placement, Sampling,
+};
 
 const WIDTH: usize = 960;
 const HEIGHT: usize = 540;
@@ -50,14 +52,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     paint(gaze(0.0), &mut acuity);
     let screen =
         twelvefold::Domain::new(glam::DVec2::ZERO, glam::DVec2::new(WIDTH as f64, HEIGHT as f64))?;
-    let mut map = ImageMap::new(wide, high, acuity.clone(), InvalidPixels::Reject)?.over(screen);
+    let mut map = Pixels::new(wide, high, acuity.clone(), InvalidPixels::Reject)
+        .and_then(ImageMap::new)?
+        .over(screen);
     let placement = Placement::new(screen, 1);
     let mut buffer = vec![Vec2::ZERO; WIDTH * HEIGHT];
     for frame in 0..frames {
         paint(gaze(frame as f32 / frames as f32), &mut acuity);
         let start = Instant::now();
-        let view =
-            PixelView::new(PixelData::F32(&acuity), wide, high).ok_or("a view of the map")?;
+        let view = PixelView::new(PixelData::F32(&acuity), wide, high)?;
         map.update(&view, InvalidPixels::Reject)?;
         let sampling = Sampling::new(&placement, &map, Amount::Density(SHARPEST))?.relaxed()?;
         let filled = sampling.fill(&mut buffer)?;

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use glam::Vec2;
 use twelvefold::{
-    Amount, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Sample, Sampling,
+    Amount, ImageMap, InvalidPixels, PixelData, PixelView, Pixels, Placement, Sample, Sampling,
 };
 
 const WIDTH: usize = 480;
@@ -38,7 +38,8 @@ fn percentile(sorted: &[f64], part: f64) -> f64 {
 fn main() -> Result<(), Box<dyn Error>> {
     let mut pixels = vec![0.0; WIDTH * HEIGHT];
     paint(0, &mut pixels);
-    let mut map = ImageMap::new(WIDTH, HEIGHT, pixels.clone(), InvalidPixels::Reject)?;
+    let mut map = Pixels::new(WIDTH, HEIGHT, pixels.clone(), InvalidPixels::Reject)
+        .and_then(ImageMap::new)?;
     let placement = Placement::new(map.domain(), 1);
     let mut buffer = vec![Vec2::ZERO; 200_000];
 
@@ -54,8 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let allocated = allocation_counter::measure(|| {
             outcome = (|| -> Result<(), Box<dyn Error>> {
                 let start = Instant::now();
-                let view = PixelView::new(PixelData::F32(&pixels), WIDTH, HEIGHT)
-                    .ok_or("as many pixels as the map has")?;
+                let view = PixelView::new(PixelData::F32(&pixels), WIDTH, HEIGHT)?;
                 map.update(&view, InvalidPixels::Reject)?;
                 updates.push(start.elapsed().as_secs_f64() * 1e6);
                 let start = Instant::now();

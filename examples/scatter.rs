@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3, Vec2};
-use twelvefold::{Amount, Domain, ImageMap, InvalidPixels, Placement, Sampling};
+use twelvefold::{Amount, Domain, ImageMap, InvalidPixels, Pixels, Placement, Sampling};
 
 /// The terrain is a square of so many meters, its heights a grid of so many nodes a side.
 const METRES: f64 = 4000.0;
@@ -157,7 +157,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .collect();
     // What is below is all that an app does when the density changes.
     let domain = Domain::new(DVec2::ZERO, DVec2::splat(METRES))?;
-    let map = ImageMap::new(SIDE, SIDE, wishes, InvalidPixels::Reject)?.over(domain);
+    let map = Pixels::new(SIDE, SIDE, wishes, InvalidPixels::Reject)
+        .and_then(ImageMap::new)?
+        .over(domain);
     let placement = Placement::new(domain, 7);
     let sampling = Sampling::new(&placement, &map, Amount::Points(TREES))?.relaxed()?;
     let mut buffer = vec![Vec2::ZERO; 12_000];

@@ -9,8 +9,8 @@ use twelvefold::estimate::{Warp, Weighting, exactly, normalize, post_stratify};
 use twelvefold::tiling::{Digits, FCode, TileCounts, TileType};
 use twelvefold::{
     Amount, BilinearMap, Constant, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels,
-    Limits, Placement, Points, Position, Sample, Sampling, SamplingError, Scalar as _, StippleMap,
-    Tables,
+    Limits, Pixels, Placement, Points, Position, Sample, Sampling, SamplingError, Scalar as _,
+    StippleMap, Tables,
 };
 use twelvefold_lab::paper;
 
@@ -130,8 +130,9 @@ pub(crate) fn maps(data: &[u8]) {
         let direction = glam::DVec3::new(size.x, size.y, min.x);
         assert!(sky.pdf(direction) >= 0.0);
     }
-    let stipple = StippleMap::new(width, height, pixels.clone(), policy, f64::from(numbers.byte()));
-    let Ok(mut map) = ImageMap::new(width, height, pixels, policy) else {
+    let stipple = Pixels::new(width, height, pixels.clone(), policy)
+        .and_then(|pixels| StippleMap::new(pixels, f64::from(numbers.byte())));
+    let Ok(mut map) = Pixels::new(width, height, pixels, policy).and_then(ImageMap::new) else {
         assert!(stipple.is_err());
         return;
     };

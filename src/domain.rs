@@ -6,10 +6,31 @@ use core::fmt;
 use glam::DVec2;
 
 /// A half-open rectangle [min, min + size) in the caller's units, x and y finite, both sizes positive.
+///
+/// With the feature `serde` it is stored as its `min` and `size`, and checked when it is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct Domain {
     min: DVec2,
     size: DVec2,
+}
+
+/// What is read where a domain should be.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Stored {
+    min: DVec2,
+    size: DVec2,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for Domain {
+    type Error = DomainError;
+
+    fn try_from(Stored { min, size }: Stored) -> Result<Self, DomainError> {
+        Self::new(min, size)
+    }
 }
 
 /// Why a rectangle is not a [`Domain`].

@@ -7,11 +7,11 @@
 //!
 //! ```
 //! use glam::Vec2;
-//! use twelvefold::{Amount, ImageMap, InvalidPixels, Placement, Sampling};
+//! use twelvefold::{Amount, ImageMap, InvalidPixels, Pixels, Placement, Sampling};
 //!
 //! // A 3 × 2 importance map: nothing on the left, four times as much below as above on the right.
 //! let pixels = vec![0.0, 1.0, 1.0, 0.0, 4.0, 4.0];
-//! let map = ImageMap::new(3, 2, pixels, InvalidPixels::Reject)?;
+//! let map = ImageMap::new(Pixels::new(3, 2, pixels, InvalidPixels::Reject)?)?;
 //! let placement = Placement::new(map.domain(), 42); // a domain and a seed; keep it across frames
 //! let sampling = Sampling::new(&placement, &map, Amount::Points(1000.0))?;
 //!
@@ -53,7 +53,8 @@
 //!
 //! - `std` (default): the module `refine`; glam and serde use `std`;
 //! - `simd` (default): wider vector instructions, chosen when the program runs; the same points;
-//! - `parallel`: `Shards`, and threads for `refine`, with rayon; the same points in the same order.
+//! - `parallel`: `Shards`, and threads for `refine`, with rayon; the same points in the same order;
+//! - `serde`: `Serialize` and `Deserialize` for [`Domain`], [`Amount`], [`Limits`] and [`Sample`].
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
@@ -95,7 +96,7 @@ pub use emit::{Division, Effort, Filled, Part, Points, Sample};
 pub use error::SamplingError;
 pub use importance::{
     BilinearMap, Constant, EnvironmentError, EnvironmentMap, EnvironmentSample, Function, ImageMap,
-    Importance, InvalidPixels, MapError, PixelData, PixelView, Probed, StippleMap,
+    Importance, InvalidPixels, MapError, PixelData, PixelView, Pixels, Probed, StippleMap,
 };
 pub use placement::Placement;
 pub use position::{Coordinate, Position, Scalar};

@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use glam::{DVec2, Vec2};
 use twelvefold::{
-    Amount, Domain, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Sampling,
+    Amount, Domain, ImageMap, InvalidPixels, PixelData, PixelView, Pixels, Placement, Sampling,
 };
 
 #[test]
@@ -15,7 +15,9 @@ fn the_counter_counts() {
 fn a_frame_allocates_nothing() {
     let pixels: Vec<f32> = (0..480 * 270).map(|i| (i % 97) as f32).collect();
     let bytes: Vec<u8> = pixels.iter().map(|p| *p as u8).collect();
-    let mut map = ImageMap::new(480, 270, pixels.clone(), InvalidPixels::Reject).unwrap();
+    let mut map = Pixels::new(480, 270, pixels.clone(), InvalidPixels::Reject)
+        .and_then(ImageMap::new)
+        .unwrap();
     let mut buffer = vec![Vec2::ZERO; 70_000];
     let (mut x, mut y) = (vec![0.0f64; 70_000], vec![0.0f64; 70_000]);
     let mut count = 0;

@@ -1,6 +1,6 @@
 //! Four maps of 1024 × 1024 pixels, from arithmetic: smooth, noise, hard edges, high dynamic range.
 
-use twelvefold::{ImageMap, InvalidPixels};
+use twelvefold::{ImageMap, InvalidPixels, Pixels};
 
 /// Pixels a side.
 pub const SIDE: usize = 1024;
@@ -19,7 +19,8 @@ impl Map {
         let pixels = (0..SIDE * SIDE)
             .map(|i| pixel(coordinate(i % SIDE), coordinate(i / SIDE), i))
             .collect();
-        let importance = ImageMap::new(SIDE, SIDE, pixels, InvalidPixels::Reject);
+        let importance =
+            Pixels::new(SIDE, SIDE, pixels, InvalidPixels::Reject).and_then(ImageMap::new);
         Self { name, importance: importance.expect("finite pixels, not negative") }
     }
 

@@ -10,6 +10,7 @@ use crate::walk::shard::Shard;
 
 /// A point of the set. [`Sampling::weighted`] adds what estimates need: density and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample<P> {
     /// Where it is, in the caller's units, inside the half-open domain.
     ///

@@ -92,8 +92,8 @@ impl Importance for BilinearMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::InvalidPixels;
     use crate::random::SplitMix64;
+    use crate::{InvalidPixels, Pixels};
     use alloc::vec::Vec;
     use proptest::prelude::*;
 
@@ -109,7 +109,11 @@ mod tests {
                     }
                 })
                 .collect();
-        BilinearMap::new(ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap())
+        BilinearMap::new(
+            Pixels::new(width, height, pixels, InvalidPixels::Reject)
+                .and_then(ImageMap::new)
+                .unwrap(),
+        )
     }
 
     proptest! {

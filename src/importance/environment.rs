@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 
 use super::frame::Frame;
 use super::policy::RadiancePolicy;
-use super::{ImageMap, InvalidPixels, MapError};
+use super::{ImageMap, InvalidPixels, MapError, Pixels};
 
 /// Why pixels are no environment map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -156,7 +156,8 @@ impl EnvironmentMap {
                 importance.push(importance_of(luminance * (solid_angle / at_equator)));
             }
         }
-        let importance = ImageMap::new(width, height, importance, InvalidPixels::Reject)?;
+        let importance = Pixels::new(width, height, importance, InvalidPixels::Reject)
+            .and_then(ImageMap::new)?;
         Ok(Self { importance, radiance: pixels, cosines, total, frame: Frame::default() })
     }
 

@@ -4,8 +4,9 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::pixels::{InvalidPixels, MapError, PixelView};
+use super::pixels::{InvalidPixels, MapError, Pixels};
 use super::raster::{Extremes, Lattice, RUN, Texels};
+use super::view::PixelView;
 use super::{Importance, pixels, retreat};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
@@ -29,45 +30,18 @@ pub struct ImageMap {
 }
 
 impl ImageMap {
-    /// A map of `width` × `height` pixels, row by row, over [0, width) × [0, height). O(pixels).
+    /// A map of pixels, over [0, width) × [0, height). O(pixels).
     ///
     /// # Errors
-    /// [`MapError`] for no pixels, another number than width × height, and the first pixel that
-    /// `invalid` does not admit.
-    pub fn new(
-        width: usize,
-        height: usize,
-        mut pixels: Vec<f32>,
-        invalid: InvalidPixels,
-    ) -> Result<Self, MapError> {
-        if width == 0 || height == 0 {
-            return Err(MapError::Empty { width, height });
-        }
-        let expected = width.saturating_mul(height);
-        if pixels.len() != expected {
-            return Err(MapError::Length { expected, found: pixels.len() });
-        }
+    /// [`MapError::Memory`] if there is no memory for the pyramids.
+    pub fn new(pixels: Pixels) -> Result<Self, MapError> {
+        let Pixels { width, height, values: pixels, row_sums, sum } = pixels;
         let size = DVec2::new(width as f64, height as f64);
-        for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
-            pixels::admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel {
-                x,
-                y,
-                value,
-            })?;
-        }
-        let mut row_sums: Vec<f64> = pixels::with_room(height)?;
-        row_sums.extend(pixels.chunks_exact(width).map(pixels::sum));
-        let sum = pixels::sum(&row_sums);
         let domain =
             Domain::new(DVec2::ZERO, size).map_err(|_| MapError::Empty { width, height })?;
         let extremes = Extremes::new(&pixels, width, height)?;
         let lattice = Lattice::new(width, height, DVec2::ZERO, DVec2::ONE);
         Ok(Self { pixels, extremes, row_sums, sum, domain, lattice })
-    }
-
-    /// The pixels, without the rest.
-    pub(super) fn into_pixels(self) -> Vec<f32> {
-        self.pixels
     }
 
     /// The same pixels stretched over another rectangle.

@@ -16,6 +16,7 @@ pub(crate) mod policy;
 mod probed;
 mod raster;
 mod stipple;
+mod view;
 
 pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
@@ -23,9 +24,10 @@ pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
 pub(crate) use environment::{importance_of, luminance};
 pub use function::Function;
 pub use image::ImageMap;
-pub use pixels::{InvalidPixels, MapError, PixelData, PixelView};
+pub use pixels::{InvalidPixels, MapError, Pixels};
 pub use probed::Probed;
 pub use stipple::StippleMap;
+pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
 

@@ -1,4 +1,4 @@
-//! Pixels on their way into maps: views of the caller's, checked, counted as the policy says, summed.
+//! Pixels on their way into maps: checked, counted as the policy says, summed.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -28,12 +28,19 @@ pub enum MapError {
         /// Rows.
         height: usize,
     },
-    /// The number of pixels is not width × height.
+    /// The number of pixels is not width × height, or too few for a view's rows.
     Length {
-        /// width × height, saturating.
+        /// How many there should be, saturating.
         expected: usize,
         /// The number of pixels.
         found: usize,
+    },
+    /// The rows of a view begin nearer to each other than they are wide.
+    Stride {
+        /// Pixels from row to row.
+        stride: usize,
+        /// Pixels a row.
+        width: usize,
     },
     /// The first pixel, row by row, that cannot be an importance.
     InvalidPixel {
@@ -60,7 +67,10 @@ impl fmt::Display for MapError {
                 write!(f, "an importance map cannot be {width} by {height} pixels")
             }
             Self::Length { expected, found } => {
-                write!(f, "{found} pixels where width times height is {expected}")
+                write!(f, "{found} pixels where {expected} are needed")
+            }
+            Self::Stride { stride, width } => {
+                write!(f, "rows of {width} pixels cannot begin {stride} pixels apart")
             }
             Self::InvalidPixel { x, y, value } => {
                 write!(f, "pixel ({x}, {y}) is {value}: importance must be finite and not negative")
@@ -88,82 +98,75 @@ pub(super) fn filled<T: Clone>(item: T, len: usize) -> Result<Vec<T>, MapError> 
     Ok(items)
 }
 
-/// Pixels in rows. Values count as they are: an 8-bit 255 is importance 255.
-#[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
-pub enum PixelData<'a> {
-    /// Single-precision numbers.
-    F32(&'a [f32]),
-    /// 8 bits.
-    U8(&'a [u8]),
-    /// 16 bits.
-    U16(&'a [u16]),
-}
-
-impl PixelData<'_> {
-    fn len(&self) -> usize {
-        match self {
-            Self::F32(data) => data.len(),
-            Self::U8(data) => data.len(),
-            Self::U16(data) => data.len(),
-        }
-    }
-}
-
-/// A rectangle of pixels: row `y` is `width` pixels from index `y · stride` on.
-#[derive(Clone, Copy, Debug)]
-pub struct PixelView<'a> {
-    data: PixelData<'a>,
+/// Pixels that are an importance: a rectangle of finite numbers that are not negative, row by row.
+///
+/// Checked once, for every map that is made of them.
+///
+/// ```
+/// use twelvefold::{ImageMap, InvalidPixels, MapError, Pixels};
+/// let pixels = Pixels::new(3, 2, vec![0.0, 1.0, 1.0, 0.0, 4.0, -4.0], InvalidPixels::ZeroNegative)?;
+/// assert_eq!((pixels.size(), pixels.mean()), ((3, 2), 1.0));
+/// let map = ImageMap::new(pixels)?;
+///
+/// let error = Pixels::new(2, 1, vec![0.5, f32::NAN], InvalidPixels::Reject).unwrap_err();
+/// assert!(matches!(error, MapError::InvalidPixel { x: 1, y: 0, .. }));
+/// # Ok::<(), MapError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Pixels {
     pub(super) width: usize,
     pub(super) height: usize,
-    stride: usize,
+    pub(super) values: Vec<f32>,
+    /// Σ of each row.
+    pub(super) row_sums: Vec<f64>,
+    /// Σ of those.
+    pub(super) sum: f64,
 }
 
-impl<'a> PixelView<'a> {
-    /// Rows without gaps, or `None` if the number of pixels is not `width` × `height`.
-    #[must_use]
-    pub fn new(data: PixelData<'a>, width: usize, height: usize) -> Option<Self> {
-        (width.checked_mul(height)? == data.len()).then_some(())?;
-        Self::strided(data, width, height, width)
-    }
-
-    /// Rows that begin `stride` pixels apart, or `None` if `stride` is less than `width` or the last
-    /// row ends after the data.
-    #[must_use]
-    pub fn strided(
-        data: PixelData<'a>,
+impl Pixels {
+    /// `width` × `height` pixels, row by row. O(pixels); `values` is not copied.
+    ///
+    /// # Errors
+    /// [`MapError`] for no pixels, another number than width × height, and the first pixel that
+    /// `invalid` does not admit.
+    pub fn new(
         width: usize,
         height: usize,
-        stride: usize,
-    ) -> Option<Self> {
-        let end = match height.checked_sub(1) {
-            None => 0,
-            Some(last) => last.checked_mul(stride)?.checked_add(width)?,
-        };
-        (width <= stride && end <= data.len()).then_some(Self { data, width, height, stride })
+        mut values: Vec<f32>,
+        invalid: InvalidPixels,
+    ) -> Result<Self, MapError> {
+        if width == 0 || height == 0 {
+            return Err(MapError::Empty { width, height });
+        }
+        let expected = width.saturating_mul(height);
+        if values.len() != expected {
+            return Err(MapError::Length { expected, found: values.len() });
+        }
+        for (y, row) in values.chunks_exact_mut(width).enumerate() {
+            admit(row, invalid).map_err(|(x, value)| MapError::InvalidPixel { x, y, value })?;
+        }
+        let mut row_sums: Vec<f64> = with_room(height)?;
+        row_sums.extend(values.chunks_exact(width).map(sum));
+        let sum = sum(&row_sums);
+        Ok(Self { width, height, values, row_sums, sum })
     }
 
-    /// Copies row `y` < height to `to`, `width` pixels.
-    #[inline(always)]
-    pub(super) fn copy_row(&self, y: usize, to: &mut [f32]) {
-        let row = y * self.stride..y * self.stride + self.width;
-        match self.data {
-            PixelData::F32(data) => to.copy_from_slice(&data[row]),
-            PixelData::U8(data) => {
-                to.iter_mut().zip(&data[row]).for_each(|(to, from)| *to = f32::from(*from));
-            }
-            PixelData::U16(data) => {
-                to.iter_mut().zip(&data[row]).for_each(|(to, from)| *to = f32::from(*from));
-            }
-        }
+    /// Pixels a row and rows.
+    #[must_use]
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.height)
     }
 
-    /// Row `y` if it is of single-precision numbers: integers need no check.
-    pub(super) fn unchecked_row(&self, y: usize) -> Option<&'a [f32]> {
-        match self.data {
-            PixelData::F32(data) => Some(&data[y * self.stride..][..self.width]),
-            _ => None,
-        }
+    /// The pixels, row by row, as they count (after [`InvalidPixels`]).
+    #[must_use]
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// The mean pixel.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.sum / self.values.len() as f64
     }
 }
 

@@ -101,7 +101,7 @@ impl From<InvalidPixels> for RadiancePolicy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::importance::ImageMap;
+    use crate::importance::{ImageMap, Pixels};
 
     #[test]
     fn every_kind_follows_its_own_policy() {
@@ -131,7 +131,7 @@ mod tests {
         {
             let policy = RadiancePolicy::from(invalid);
             for value in [0.0, 2.0, -3.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-                let map = ImageMap::new(1, 1, alloc::vec![value], invalid);
+                let map = Pixels::new(1, 1, alloc::vec![value], invalid).and_then(ImageMap::new);
                 let admitted = map.ok().map(|map| map.pixels()[0]);
                 assert_eq!(policy.admit(value), admitted, "{invalid:?} {value}");
             }

@@ -11,7 +11,9 @@ use glam::DVec2;
 
 use super::planes::{Planes, Scales};
 use super::raster::{Grid, RUN, SAME_SIDE};
-use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError, constrain_each, retreat};
+use super::{
+    BilinearMap, ImageMap, Importance, InvalidPixels, MapError, Pixels, constrain_each, retreat,
+};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
@@ -59,21 +61,34 @@ pub struct StippleMap {
 }
 
 impl StippleMap {
-    /// Prepares `width` × `height` pixels, row by row, for about `points` points. O(pixels).
+    /// Prepares pixels for about `points` points (a spacing of the whole image for fewer than one, and for
+    /// NaN). O(pixels).
     ///
     /// An all-zero image is allowed, and holds no points.
     ///
     /// # Errors
-    /// [`MapError`] as for [`ImageMap::new`].
-    pub fn new(
-        width: usize,
-        height: usize,
-        pixels: Vec<f32>,
-        invalid: InvalidPixels,
-        points: f64,
-    ) -> Result<Self, MapError> {
-        let image = ImageMap::new(width, height, pixels, invalid)?;
-        Self::of_image(image, points, Self::ACCEPTANCE)
+    /// [`MapError::Memory`] if there is no memory for the planes.
+    ///
+    /// ```
+    /// use glam::Vec2;
+    /// use twelvefold::{Amount, InvalidPixels, Pixels, Placement, Sampling, StippleMap};
+    /// // A dark disc on white paper.
+    /// let dark = |i: u32| {
+    ///     let (x, y) = (i % 64, i / 64);
+    ///     if x.abs_diff(32).pow(2) + y.abs_diff(32).pow(2) < 400 { 0.9 } else { 0.0 }
+    /// };
+    /// let pixels = Pixels::new(64, 64, (0..4096).map(dark).collect(), InvalidPixels::Reject)?;
+    /// let map = StippleMap::new(pixels, 500.0)?;
+    /// let placement = Placement::new(map.domain(), 1);
+    /// let sampling = Sampling::new(&placement, &map, Amount::Points(500.0))?.relaxed()?;
+    /// for sample in sampling.points::<Vec2>()? {
+    ///     let [x, y] = sample?.position.to_array();
+    ///     assert!(dark(y as u32 * 64 + x as u32) > 0.0); // no dot on white
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn new(pixels: Pixels, points: f64) -> Result<Self, MapError> {
+        Self::accepting(pixels, points, Self::ACCEPTANCE)
     }
 
     /// Half-side, in spacings, of the box over which acceptance is averaged away from edges. Measured on the test image at
@@ -82,11 +97,11 @@ impl StippleMap {
     pub const ACCEPTANCE: f64 = 0.8;
 
     /// The same for the trainer, which accepts by another box.
-    pub fn of_image(image: ImageMap, points: f64, acceptance: f64) -> Result<Self, MapError> {
-        let (width, height) = image.size();
-        let mean = image.mean();
-        let importance = image.into_pixels();
-        // Fewer than one point, or NaN, is a spacing of the whole image.
+    #[doc(hidden)]
+    pub fn accepting(pixels: Pixels, points: f64, acceptance: f64) -> Result<Self, MapError> {
+        let (width, height) = pixels.size();
+        let mean = pixels.mean();
+        let importance = pixels.values;
         let points = if points > 1.0 { points } else { 1.0 };
         let mean_spacing = libm::sqrt(importance.len() as f64 / points);
         let scales = Scales {
@@ -96,7 +111,8 @@ impl StippleMap {
             acceptance,
         };
         let Planes { acceptance, phase, detail } = Planes::new(&importance, width, &scales)?;
-        let acceptance = ImageMap::new(width, height, acceptance, InvalidPixels::Reject)?;
+        let acceptance = Pixels::new(width, height, acceptance, InvalidPixels::Reject)
+            .and_then(ImageMap::new)?;
         Ok(Self { acceptance: BilinearMap::new(acceptance), phase, detail, scales })
     }
 
@@ -275,7 +291,9 @@ mod tests {
         let mut random = SplitMix64::new(5);
         let pixels: Vec<f32> =
             (0..40 * 30).map(|i| if i % 40 < 20 { random.unit() as f32 } else { 0.9 }).collect();
-        let map = StippleMap::new(40, 30, pixels, InvalidPixels::Reject, 400.0).unwrap();
+        let map = Pixels::new(40, 30, pixels, InvalidPixels::Reject)
+            .and_then(|pixels| StippleMap::new(pixels, 400.0))
+            .unwrap();
         // More than a run, a part of one at the end, and some points beyond the image.
         let mut coordinate = |size: f64| -> Vec<f64> {
             (0..200).map(|_| random.unit() * (size + 4.0) - 2.0).collect()
@@ -314,7 +332,8 @@ mod tests {
                 .map(|_| if random.unit() < white { 0.0 } else { random.unit() as f32 })
                 .collect();
             let count = 1.0 + 400.0 * random.unit();
-            let map = StippleMap::new(width, height, pixels.clone(), InvalidPixels::Reject, count);
+            let map = Pixels::new(width, height, pixels.clone(), InvalidPixels::Reject)
+                .and_then(|pixels| StippleMap::new(pixels, count));
             let map = map.unwrap();
             let mut place = |around: DVec2, reach: DVec2| {
                 around + reach * (DVec2::new(random.unit(), random.unit()) - 0.5)

@@ -15,6 +15,7 @@ pub(crate) use scale::RankScale;
 
 /// How many points.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Amount {
     /// About this many in all: the expected number over all seeds is exactly this, and a single
@@ -27,6 +28,7 @@ pub enum Amount {
 
 /// Limits on the work of one sampling, checked before it starts where that is possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// The most points that may be expected. Where the importance does not know its integral, its
     /// upper bound times the area counts.

@@ -191,7 +191,8 @@ mod tests {
     use crate::bake;
     use crate::bake::displacement::{Layer, Slot, born_classes};
     use crate::{
-        Amount, Constant, Domain, Function, ImageMap, InvalidPixels, Placement, StippleMap, Tables,
+        Amount, Constant, Domain, Function, ImageMap, InvalidPixels, Pixels, Placement, StippleMap,
+        Tables,
     };
     use glam::Vec2;
     use proptest::prelude::*;
@@ -215,7 +216,7 @@ mod tests {
                 _ => random.unit() as f32,
             })
             .collect();
-        ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap()
+        Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap()
     }
 
     /// Two layers of noise: vectors up to some three edges long, all generations, unborn classes.
@@ -295,7 +296,7 @@ mod tests {
                 prop_assert!(a == b, "depth {depth} {} {} {wrong:?}", a.len(), b.len());
                 let pixels = map.pixels().to_vec();
                 let stipple =
-                    StippleMap::new(width, height, pixels, InvalidPixels::Reject, count).unwrap();
+                    Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(|pixels| StippleMap::new(pixels, count)).unwrap();
                 let stippled = Sampling::new(&placement, &stipple, Amount::Points(count)).unwrap();
                 let stippled = stippled.relaxed().unwrap();
                 prop_assert_eq!(sampled(&stippled), points(&stippled));

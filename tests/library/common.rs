@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 use twelvefold::{
-    EnvironmentMap, ImageMap, Importance, InvalidPixels, Sampling, SamplingError, Tables, bake,
+    EnvironmentMap, ImageMap, Importance, InvalidPixels, Pixels, Sampling, SamplingError, Tables,
+    bake,
 };
 
 /// All points as (rank, position), in the order of their ranks.
@@ -22,7 +23,7 @@ pub(crate) fn points<I: Importance>(
 /// A map of these pixels, which are all allowed.
 pub(crate) fn map(width: usize, height: usize, pixel: impl Fn(usize, usize) -> f32) -> ImageMap {
     let pixels = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
-    ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap()
+    Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap()
 }
 
 /// A hash of two numbers, as a number in [0, 1).

@@ -7,7 +7,7 @@ use twelvefold::estimate::{
 };
 use twelvefold::{
     Amount, BilinearMap, Constant, Disc, Domain, EnvironmentMap, Function, ImageMap, Importance,
-    InvalidPixels, Limits, Placement, Sampling, SamplingError,
+    InvalidPixels, Limits, Pixels, Placement, Sampling, SamplingError,
 };
 
 /// Functions to integrate, of coordinates in [0, 1)² of the domain: one even, one smooth, one with an
@@ -465,7 +465,8 @@ fn light_from_an_environment_is_unbiased_in_solid_angle() {
 #[test]
 fn a_bilinear_map_is_sampled_like_its_function() {
     let image =
-        ImageMap::new(9, 7, (0..63).map(|i| (i % 10) as f32).collect(), InvalidPixels::Reject);
+        Pixels::new(9, 7, (0..63).map(|i| (i % 10) as f32).collect(), InvalidPixels::Reject)
+            .and_then(ImageMap::new);
     let bilinear = BilinearMap::new(image.unwrap());
     let domain = bilinear.map().domain();
     let placement = Placement::new(domain, 3);

@@ -3,13 +3,15 @@
 use glam::Vec2;
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Disc, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Placement,
-    Sampling,
+    Amount, Disc, ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Pixels,
+    Placement, Sampling,
 };
 
 fn assert_same(updated: &ImageMap, pixels: &[f32]) {
     let (width, height) = updated.size();
-    let fresh = ImageMap::new(width, height, pixels.to_vec(), InvalidPixels::ZeroAll).unwrap();
+    let fresh = Pixels::new(width, height, pixels.to_vec(), InvalidPixels::ZeroAll)
+        .and_then(ImageMap::new)
+        .unwrap();
     assert_eq!(updated.pixels(), fresh.pixels());
     assert_eq!(updated.mean().to_bits(), fresh.mean().to_bits());
     // All bounds agree: over every square of a power of two that the pyramid holds.
@@ -45,7 +47,7 @@ proptest! {
         ),
     ) {
         let mut pixels = vec![1.0f32; width * height];
-        let mut map = ImageMap::new(width, height, pixels.clone(), InvalidPixels::Reject).unwrap();
+        let mut map = Pixels::new(width, height, pixels.clone(), InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
         for (left, top, right, bottom, format, gap, bits) in updates {
             let place = |from: f64, to: f64, size: usize| {
                 let at = (from * size as f64) as usize;
@@ -91,7 +93,8 @@ proptest! {
 
 #[test]
 fn a_refused_update_leaves_the_map_as_it_was() {
-    let mut map = ImageMap::new(8, 6, vec![2.0; 48], InvalidPixels::Reject).unwrap();
+    let mut map =
+        Pixels::new(8, 6, vec![2.0; 48], InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
     let before = map.clone();
     let mut patch = [1.0f32; 12];
     patch[7] = f32::NAN;
@@ -117,13 +120,13 @@ fn a_refused_update_leaves_the_map_as_it_was() {
 #[test]
 fn views_that_do_not_fit_their_data_do_not_exist() {
     let data = PixelData::U16(&[0; 10]);
-    assert!(PixelView::new(data, 5, 2).is_some());
-    assert!(PixelView::new(data, 5, 3).is_none());
-    assert!(PixelView::new(data, usize::MAX, usize::MAX).is_none());
-    assert!(PixelView::strided(data, 4, 2, 6).is_some());
-    assert!(PixelView::strided(data, 5, 2, 6).is_none());
-    assert!(PixelView::strided(data, 5, 2, 4).is_none());
-    assert!(PixelView::strided(data, 1, usize::MAX, usize::MAX).is_none());
+    assert!(PixelView::new(data, 5, 2).is_ok());
+    assert!(PixelView::new(data, 5, 3).is_err());
+    assert!(PixelView::new(data, usize::MAX, usize::MAX).is_err());
+    assert!(PixelView::strided(data, 4, 2, 6).is_ok());
+    assert!(PixelView::strided(data, 5, 2, 6).is_err());
+    assert!(PixelView::strided(data, 5, 2, 4).is_err());
+    assert!(PixelView::strided(data, 1, usize::MAX, usize::MAX).is_err());
 }
 
 #[test]
@@ -133,8 +136,12 @@ fn a_bound_misses_no_pixel_and_sees_none_far_away() {
             let mut pixels = vec![0.0f32; width * height];
             pixels[hot] = 1.0;
             let negative = pixels.iter().map(|pixel| 1.0 - pixel).collect();
-            let negative = ImageMap::new(width, height, negative, InvalidPixels::Reject).unwrap();
-            let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap();
+            let negative = Pixels::new(width, height, negative, InvalidPixels::Reject)
+                .and_then(ImageMap::new)
+                .unwrap();
+            let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
+                .and_then(ImageMap::new)
+                .unwrap();
             // The nearest point of the hot pixel's square to a disc's center.
             let low = glam::DVec2::new((hot % width) as f64, (hot / width) as f64);
             for i in 0..64 {

@@ -6,7 +6,7 @@ use crate::common::{map, noise, points};
 use glam::{DVec2, Vec2};
 use twelvefold::{
     Amount, Constant, Disc, Domain, DomainError, Function, ImageMap, Importance, InvalidPixels,
-    Limits, MapError, Placement, Sampling, SamplingError,
+    Limits, MapError, Pixels, Placement, Sampling, SamplingError,
 };
 
 /// Importance 1 in a disc and 0 elsewhere, with its exact bound.
@@ -282,7 +282,7 @@ fn pixels_that_are_no_importance_are_located_or_follow_the_policy() {
     let with = |value: f32, policy| {
         let mut pixels = vec![1.0; 12];
         pixels[7] = value;
-        ImageMap::new(4, 3, pixels, policy)
+        Pixels::new(4, 3, pixels, policy).and_then(ImageMap::new)
     };
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, -1e-45] {
         match with(value, InvalidPixels::Reject).unwrap_err() {
@@ -314,12 +314,17 @@ fn pixels_that_are_no_importance_are_located_or_follow_the_policy() {
 #[test]
 fn sizes_that_are_no_image_are_errors_and_thin_ones_are_not() {
     for (width, height) in [(0, 0), (0, 5), (5, 0)] {
-        let empty = ImageMap::new(width, height, vec![], InvalidPixels::Reject).unwrap_err();
+        let empty = Pixels::new(width, height, vec![], InvalidPixels::Reject)
+            .and_then(ImageMap::new)
+            .unwrap_err();
         assert_eq!(empty, MapError::Empty { width, height });
     }
-    let short = ImageMap::new(3, 3, vec![0.0; 8], InvalidPixels::Reject).unwrap_err();
+    let short =
+        Pixels::new(3, 3, vec![0.0; 8], InvalidPixels::Reject).and_then(ImageMap::new).unwrap_err();
     assert_eq!(short, MapError::Length { expected: 9, found: 8 });
-    let wrapped = ImageMap::new(usize::MAX, 2, vec![0.0; 8], InvalidPixels::Reject).unwrap_err();
+    let wrapped = Pixels::new(usize::MAX, 2, vec![0.0; 8], InvalidPixels::Reject)
+        .and_then(ImageMap::new)
+        .unwrap_err();
     assert_eq!(wrapped, MapError::Length { expected: usize::MAX, found: 8 });
 
     let sizes = [(1, 1), (1, 1000), (1000, 1), (3, 257), (255, 129), (17, 1), (2, 3)];
@@ -443,7 +448,8 @@ fn one_hot_texel_in_sixty_seven_million_gets_all_points_in_few_tiles() {
     let (side, hot) = (8192, 5003 * 8192 + 7177);
     let mut pixels = vec![0.0f32; side * side];
     pixels[hot] = 1.0;
-    let image = ImageMap::new(side, side, pixels, InvalidPixels::Reject).unwrap();
+    let image =
+        Pixels::new(side, side, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
     for seed in 0..3 {
         let placement = Placement::new(image.domain(), seed);
         let sampling =
@@ -463,7 +469,8 @@ fn ten_million_texels_are_sampled() {
     let (width, height) = (3167, 3163);
     let pixels: Vec<f32> =
         (0..height).flat_map(|y| (0..width).map(move |x| ((x ^ y) & 255) as f32)).collect();
-    let image = ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap();
+    let image =
+        Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
     let placement = Placement::new(image.domain(), 1);
     let sampling = Sampling::new(&placement, &image, Amount::Points(1000.0)).unwrap();
     let count = points(&sampling).unwrap().len();

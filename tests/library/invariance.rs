@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use crate::common::every_depth;
 use twelvefold::{
-    Amount, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Placement, Position,
-    Probed, Sample, Sampling, SamplingError, Scalar,
+    Amount, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Pixels, Placement,
+    Position, Probed, Sample, Sampling, SamplingError, Scalar,
 };
 
 /// Rank and the bits of the coordinates.
@@ -42,7 +42,7 @@ fn map(width: usize, height: usize, contrast: f32, seed: u64) -> ImageMap {
         });
     }
     pixels[0] = 1.0;
-    ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap()
+    Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap()
 }
 
 fn domains() -> impl Strategy<Value = Domain> {
@@ -308,7 +308,8 @@ impl Importance for WithoutLowerBound<'_> {
 fn lower_bounds_save_tests_and_change_nothing_else() {
     let smooth: Vec<f32> =
         (0..64 * 64).map(|i| 1.0 + (i % 64 * (i / 64)) as f32 / 4096.0).collect();
-    let smooth = ImageMap::new(64, 64, smooth, InvalidPixels::Reject).unwrap();
+    let smooth =
+        Pixels::new(64, 64, smooth, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
     for (map, saves) in [(smooth, true), (map(90, 70, 9.0, 4), false)] {
         let domain = Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap();
         let map = map.over(domain);

@@ -6,8 +6,8 @@ use crate::common::{every_depth, map, noise, points};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use twelvefold::{
-    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Placement,
-    Sampling, StippleMap,
+    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Pixels,
+    Placement, Sampling, StippleMap,
 };
 
 /// Sizes, pixels of several characters, and a seed.
@@ -19,7 +19,10 @@ fn maps() -> impl Strategy<Value = (ImageMap, u64)> {
             (Just((w, h)), pixels, any::<u64>())
         })
         .prop_map(|((w, h), pixels, seed)| {
-            (ImageMap::new(w, h, pixels, InvalidPixels::Reject).unwrap(), seed)
+            (
+                Pixels::new(w, h, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap(),
+                seed,
+            )
         })
 }
 
@@ -45,7 +48,7 @@ proptest! {
     ) {
         let (width, height) = low.size();
         let raised = low.pixels().iter().zip(&raise).map(|(p, r)| p + r).collect();
-        let high = ImageMap::new(width, height, raised, InvalidPixels::Reject).unwrap();
+        let high = Pixels::new(width, height, raised, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
         let placement = Placement::new(low.domain(), seed);
         let few = Sampling::new(&placement, &low, Amount::Density(density)).unwrap();
         let many = Sampling::new(&placement, &high, Amount::Density(density)).unwrap();
@@ -247,9 +250,9 @@ proptest! {
             .map(|i| at(i % width, i / width))
             .map(|v| if f64::from(v) < ink { 0.2 + v } else { 0.0 })
             .collect();
-        let map = ImageMap::new(width, height, pixels.clone(), InvalidPixels::Reject).unwrap();
+        let map = Pixels::new(width, height, pixels.clone(), InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
         prop_assume!(map.mean() > 0.0);
-        let stipple = StippleMap::new(width, height, pixels, InvalidPixels::Reject, count).unwrap();
+        let stipple = Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(|pixels| StippleMap::new(pixels, count)).unwrap();
         let integral = map.mean() * map.domain().area();
         let function = Function::new(|at| map.value(at), |_: &Disc| 1.2).with_integral(integral);
         let domain = map.domain();
@@ -276,7 +279,9 @@ fn relaxed_points_along_an_edge_keep_their_distance_and_their_number() {
     let area: f64 = pixels.iter().map(|v| f64::from(*v)).sum();
     let (spacing, seeds) = (3.0, 6);
     let count = area / (spacing * spacing);
-    let map = StippleMap::new(side, side, pixels, InvalidPixels::Reject, count).unwrap();
+    let map = Pixels::new(side, side, pixels, InvalidPixels::Reject)
+        .and_then(|pixels| StippleMap::new(pixels, count))
+        .unwrap();
     let (mut total, mut near) = (0, 0);
     for seed in 0..seeds {
         let placement = Placement::new(map.domain(), seed);

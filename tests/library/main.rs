@@ -9,6 +9,8 @@ mod hard_cases;
 mod invariance;
 mod laws;
 mod numbering;
+#[cfg(feature = "serde")]
+mod stored;
 mod tables;
 mod tiling;
 mod value_stability;

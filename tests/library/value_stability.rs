@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 use glam::{DVec2, Vec2};
 use sha2::{Digest, Sha256};
 use twelvefold::{
-    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Placement,
-    Sampling, StippleMap,
+    Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Pixels,
+    Placement, Sampling, StippleMap,
 };
 
 const GOLDEN: &str = include_str!("golden/points.txt");
@@ -23,7 +23,7 @@ fn scramble(n: usize) -> u32 {
 
 fn map(width: usize, height: usize, pixel: impl Fn(usize, usize) -> f32) -> ImageMap {
     let pixels = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
-    ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap()
+    Pixels::new(width, height, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap()
 }
 
 fn ramp() -> ImageMap {
@@ -127,7 +127,9 @@ fn points_are_those_of_the_golden_file() {
             let pixels = map.pixels().to_vec();
             let (reject, size) = (InvalidPixels::Reject, map.domain().size());
             let (width, height) = (size.x as usize, size.y as usize);
-            let stipple = StippleMap::new(width, height, pixels, reject, 20_000.0).unwrap();
+            let stipple = Pixels::new(width, height, pixels, reject)
+                .and_then(|pixels| StippleMap::new(pixels, 20_000.0))
+                .unwrap();
             let sampling = Sampling::new(&placement, &stipple, amount).unwrap().relaxed().unwrap();
             describe(&mut lines, &format!("stipple-{name}-{seed}"), &sampling);
         }

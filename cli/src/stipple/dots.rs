@@ -6,8 +6,8 @@ use glam::DVec2;
 use twelvefold::estimate::{ExactError, exactly};
 use twelvefold::refine::{ITERATIONS, RefineError, Refiner};
 use twelvefold::{
-    Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Placement, Sample, Sampling,
-    SamplingError, StippleMap,
+    Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Pixels, Placement, Sample,
+    Sampling, SamplingError, StippleMap,
 };
 use twelvefold_files::picture::Picture;
 
@@ -181,7 +181,9 @@ fn raw<E>(
     let invalid = InvalidPixels::Reject;
     match (wish.count, wish.centers) {
         (Count::Exactly(count), _) => {
-            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
+            let map = Pixels::new(width, height, importance, invalid)
+                .and_then(ImageMap::new)
+                .map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let dots =
                 exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
@@ -191,13 +193,16 @@ fn raw<E>(
             })
         }
         (Count::About(count), Centers::Fixed) => {
-            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
+            let map = Pixels::new(width, height, importance, invalid)
+                .and_then(ImageMap::new)
+                .map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count));
             stream(&sampling.map_err(DotsError::Sampling)?, &map, wish.ranked, take)
         }
         (Count::About(count), Centers::Relaxed) => {
-            let map = StippleMap::new(width, height, importance, invalid, count)
+            let map = Pixels::new(width, height, importance, invalid)
+                .and_then(|pixels| StippleMap::new(pixels, count))
                 .map_err(DotsError::Map)?;
             let placement = Placement::new(map.domain(), wish.seed);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count))

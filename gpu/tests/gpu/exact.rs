@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec2};
 use twelvefold::{
-    Amount, Domain, ImageMap, InvalidPixels, Placement, Sample, Sampling, SamplingError,
+    Amount, Domain, ImageMap, InvalidPixels, Pixels, Placement, Sample, Sampling, SamplingError,
 };
 use twelvefold_gpu::{Arithmetic, Capacity, Importance, Order, Plan, Points, Source};
 
@@ -42,10 +42,10 @@ impl Case {
     }
 
     fn cpu(&self) -> Result<Ranked, SamplingError> {
-        let map =
-            ImageMap::new(self.width, self.height, self.pixels.clone(), InvalidPixels::ZeroAll)
-                .unwrap()
-                .over(self.domain);
+        let map = Pixels::new(self.width, self.height, self.pixels.clone(), InvalidPixels::ZeroAll)
+            .and_then(ImageMap::new)
+            .unwrap()
+            .over(self.domain);
         let sampling = Sampling::new(&self.placement, &map, Amount::Density(self.density))?;
         let mut points = Vec::new();
         for sample in sampling.points::<Vec2>()? {

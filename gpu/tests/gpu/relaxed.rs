@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec2;
 use twelvefold::export::Export;
-use twelvefold::{Amount, Domain, ImageMap, InvalidPixels, Sample, Sampling};
+use twelvefold::{Amount, Domain, ImageMap, InvalidPixels, Pixels, Sample, Sampling};
 use twelvefold_gpu::{Arithmetic, Importance, Order, Plan, Points, RELAXED_ERROR, Source};
 
 use crate::device::{Device, device};
@@ -17,7 +17,8 @@ fn check(gpu: &Device, case: &Case, order: Order) {
     let buffer = gpu.buffer(&case.pixels);
     let output = gpu.run(&sampler, Importance::Buffer(&buffer), case.density);
     assert!(output.status.is_complete(), "{:?}", output.status);
-    let map = ImageMap::new(case.width, case.height, case.pixels.clone(), InvalidPixels::Reject)
+    let map = Pixels::new(case.width, case.height, case.pixels.clone(), InvalidPixels::Reject)
+        .and_then(ImageMap::new)
         .unwrap()
         .over(case.domain);
     let sampling = Sampling::new(&case.placement, &map, Amount::Density(case.density)).unwrap();

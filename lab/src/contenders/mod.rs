@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use glam::Vec2;
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Placement, Sampling,
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Pixels, Placement, Sampling,
     SamplingError, StippleMap, Tables, bake,
 };
 
@@ -159,7 +159,9 @@ pub fn image<'a>(map: &'a Map) -> Vec<Contender<'a>> {
     let stipple = move |n: usize| {
         let pixels = importance.pixels().to_vec();
         let (side, reject) = (maps::SIDE, InvalidPixels::Reject);
-        StippleMap::new(side, side, pixels, reject, n as f64).expect("a valid map")
+        Pixels::new(side, side, pixels, reject)
+            .and_then(|pixels| StippleMap::new(pixels, n as f64))
+            .expect("a valid map")
     };
     let stippled = ours("twelvefold, relaxed stipple", domain, tables, true, stipple);
     // A prepared map for each of many points is more memory than a bench needs.

@@ -69,12 +69,14 @@ fn invert<T: Float>(shares: &[T], u: T) -> (usize, T) {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use twelvefold::InvalidPixels;
+    use twelvefold::{InvalidPixels, Pixels};
 
     #[test]
     fn inversion_follows_the_map() {
         let pixels: Vec<f32> = vec![0.0, 1.0, 2.0, 0.0, 5.0, 0.0, 0.0, 3.0];
-        let map = ImageMap::new(4, 2, pixels.clone(), InvalidPixels::Reject).unwrap();
+        let map = Pixels::new(4, 2, pixels.clone(), InvalidPixels::Reject)
+            .and_then(ImageMap::new)
+            .unwrap();
         let (double, single) = (InverseCdf::<f64>::new(&map), InverseCdf::<f32>::new(&map));
         let mut random = Random::new(1, &[]);
         let mut counts = [0.0; 8];

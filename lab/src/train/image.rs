@@ -8,7 +8,9 @@ use glam::DVec2;
 use super::field::{Field, threshold_of_phase};
 use super::place::density;
 use twelvefold::Disc;
-use twelvefold::importance::{BilinearMap, ImageMap, Importance, InvalidPixels, StippleMap};
+use twelvefold::importance::{
+    BilinearMap, ImageMap, Importance, InvalidPixels, Pixels, StippleMap,
+};
 
 /// T from an image of importance; its center lies at 0, x right, y down.
 #[derive(Clone, Debug)]
@@ -40,8 +42,8 @@ impl Image<StippleMap> {
         tau: f64,
         acceptance: f64,
     ) -> Option<Self> {
-        Self::new(importance, width, count, tau, |image| {
-            StippleMap::of_image(image, count, acceptance).ok()
+        Self::new(importance, width, count, tau, |pixels| {
+            StippleMap::accepting(pixels, count, acceptance).ok()
         })
     }
 }
@@ -50,7 +52,9 @@ impl Image<BilinearMap> {
     /// For fixed centers, otherwise as [`stippled`](Image::stippled).
     #[must_use]
     pub fn fixed(importance: Vec<f32>, width: usize, count: f64, tau: f64) -> Option<Self> {
-        Self::new(importance, width, count, tau, |image| Some(BilinearMap::new(image)))
+        Self::new(importance, width, count, tau, |pixels| {
+            ImageMap::new(pixels).ok().map(BilinearMap::new)
+        })
     }
 }
 
@@ -60,18 +64,18 @@ impl<I: Importance> Image<I> {
         width: usize,
         count: f64,
         tau: f64,
-        prepare: impl FnOnce(ImageMap) -> Option<I>,
+        prepare: impl FnOnce(Pixels) -> Option<I>,
     ) -> Option<Self> {
         let height = importance.len().checked_div(width)?;
-        let image = ImageMap::new(width, height, importance, InvalidPixels::Reject).ok()?;
-        let mean = image.mean();
+        let pixels = Pixels::new(width, height, importance, InvalidPixels::Reject).ok()?;
+        let mean = pixels.mean();
         if !(mean > 0.0 && count > 0.0) {
             return None;
         }
         let extent = DVec2::new(width as f64, height as f64);
         let mean_threshold = threshold_of_phase(tau);
         Some(Self {
-            importance: prepare(image)?,
+            importance: prepare(pixels)?,
             extent,
             threshold_of_one: mean_threshold / mean,
             // count = density · area.

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use glam::DVec2;
 use twelvefold::{
-    Amount, EnvironmentMap, ImageMap, InvalidPixels, Placement, Sampling, StippleMap,
+    Amount, EnvironmentMap, ImageMap, InvalidPixels, Pixels, Placement, Sampling, StippleMap,
 };
 
 use crate::args::ReportOptions;
@@ -110,7 +110,8 @@ fn photo(options: &ReportOptions) -> Result<ImageMap, Failure> {
     let Some(path) = &options.photo else { return Ok(tone::drawing()) };
     let tone = Tone { linear: false, invert: false, ..Tone::default() };
     let photo = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
-    ImageMap::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
+    Pixels::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
+        .and_then(ImageMap::new)
         .map_err(|error| Failure::at(path, error))
 }
 
@@ -332,7 +333,8 @@ fn relaxed_dots(photo: &ImageMap, sizes: &[usize]) -> Curve {
     let ((width, height), mut points) = (photo.size(), Vec::new());
     for &n in sizes.iter().filter(|n| **n >= LEAST_DOTS) {
         let pixels = photo.pixels().to_vec();
-        let map = StippleMap::new(width, height, pixels, InvalidPixels::Reject, n as f64);
+        let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
+            .and_then(|pixels| StippleMap::new(pixels, n as f64));
         let Ok(map) = map else { continue };
         let mut gathered = Gathered::default();
         for seed in 0..TONE_SEEDS {

@@ -8,8 +8,8 @@ use twelvefold::estimate::{
 };
 use twelvefold::light::Sobol;
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Probed,
-    Sampling,
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Pixels, Placement,
+    Probed, Sampling,
 };
 
 use rand::SeedableRng as _;
@@ -114,7 +114,9 @@ pub(crate) fn filled<I: Importance>(sampling: &Sampling<'_, I>, n: usize) -> Opt
 /// Constant importance as a map, in whose quarters points are stratified. `None` never.
 static EVEN: LazyLock<Option<ImageMap>> = LazyLock::new(|| {
     let side = 64;
-    let map = ImageMap::new(side, side, vec![1.0; side * side], InvalidPixels::Reject).ok()?;
+    let map = Pixels::new(side, side, vec![1.0; side * side], InvalidPixels::Reject)
+        .and_then(ImageMap::new)
+        .ok()?;
     Some(map.over(Domain::UNIT))
 });
 

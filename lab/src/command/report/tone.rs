@@ -1,7 +1,7 @@
 //! Tone: a stippling after the blur of a viewer's eye, against the picture after the same blur.
 
 use glam::DVec2;
-use twelvefold::{ImageMap, InvalidPixels};
+use twelvefold::{ImageMap, InvalidPixels, Pixels};
 
 /// The viewer's blur in mean dot spacings: dots that are a line pair apart just merge.
 const BLUR: f64 = 1.5;
@@ -25,7 +25,8 @@ pub(crate) fn drawing() -> ImageMap {
             if (p - DVec2::new(0.8, 0.25)).length() < 0.1 { 1.0 } else { shade as f32 }
         })
         .collect();
-    ImageMap::new(side, side, pixels, InvalidPixels::Reject)
+    Pixels::new(side, side, pixels, InvalidPixels::Reject)
+        .and_then(ImageMap::new)
         .unwrap_or_else(|_| unreachable!("shades lie in 0..=1"))
 }
 
@@ -103,7 +104,9 @@ mod tests {
 
     #[test]
     fn even_dots_err_less_than_none_or_clumps() {
-        let flat = ImageMap::new(64, 64, vec![1.0; 4096], InvalidPixels::Reject).unwrap();
+        let flat = Pixels::new(64, 64, vec![1.0; 4096], InvalidPixels::Reject)
+            .and_then(ImageMap::new)
+            .unwrap();
         let even: Vec<DVec2> = (0..256)
             .map(|i| 4.0 * DVec2::new(f64::from(i % 16), f64::from(i / 16)) + 2.0)
             .collect();

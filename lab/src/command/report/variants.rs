@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use glam::{DVec2, Vec2};
 use twelvefold::estimate::{Weighting, exactly};
 use twelvefold::{
-    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Placement, Position,
-    Probed, Sampling, Scalar as _, StippleMap, Tables, bake,
+    Amount, Constant, Domain, ImageMap, Importance, InvalidPixels, Limits, Pixels, Placement,
+    Position, Probed, Sampling, Scalar as _, StippleMap, Tables, bake,
 };
 
 use super::scenes::PLANES;
@@ -102,7 +102,9 @@ fn row(text: &mut String, picture: &ImageMap, sizes: &[usize], tables: Tables<'_
         Way::Stipple32 => {
             let stipple = |n: usize| {
                 let ((width, height), pixels) = (picture.size(), picture.pixels().to_vec());
-                StippleMap::new(width, height, pixels, InvalidPixels::Reject, n as f64).ok()
+                Pixels::new(width, height, pixels, InvalidPixels::Reject)
+                    .and_then(|pixels| StippleMap::new(pixels, n as f64))
+                    .ok()
             };
             for n in sizes {
                 let map = stipple(*n);
