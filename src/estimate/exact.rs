@@ -71,6 +71,20 @@ impl From<SamplingError> for ExactError {
 /// # Errors
 /// [`ExactError`]: all that [`Sampling::within`] and its walk report, and [`ExactError::TooFew`]
 /// and [`ExactError::Memory`]. `n` = 0 gives no points and no error.
+///
+/// ```
+/// use twelvefold::estimate::exactly;
+/// use twelvefold::{ImageMap, InvalidPixels, Limits, Pixels, Placement};
+/// let pixels = (0..64 * 64).map(|i| (i % 64) as f32).collect();
+/// let map = ImageMap::new(Pixels::new(64, 64, pixels, InvalidPixels::Reject)?)?;
+/// let placement = Placement::new(map.domain(), 1);
+/// let points = exactly(&placement, &map, 256, Limits::default())?;
+/// assert_eq!(points.len(), 256);
+/// // The mean of the columns' numbers, each point with its weight: 1/density.
+/// let mean = points.iter().map(|p| p.position.x * p.weight).sum::<f64>() / (64.0 * 64.0);
+/// assert!((mean / 32.0 - 1.0).abs() < 0.02);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn exactly<I: Importance>(
     placement: &Placement<'_>,
     importance: &I,

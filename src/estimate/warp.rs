@@ -21,6 +21,22 @@ use crate::sampling::Limits;
 /// with Owen-scrambled [Sobol](crate::light::Sobol) points. Pixels of importance 0 get no point.
 ///
 /// O(pixels) to make; 3 to 4 numbers read a level and point.
+///
+/// ```
+/// use glam::DVec2;
+/// use twelvefold::estimate::Warp;
+/// use twelvefold::light::Sobol;
+/// use twelvefold::{ImageMap, InvalidPixels, Pixels};
+/// // Twice as bright on the right; nothing below.
+/// let pixels = Pixels::new(2, 2, vec![1.0, 2.0, 0.0, 0.0], InvalidPixels::Reject)?;
+/// let map = ImageMap::new(pixels)?;
+/// let warp = Warp::new(&map).ok_or("black")?;
+/// let numbers = Sobol::new(5);
+/// let points: Vec<DVec2> = (0..300).map(|i| warp.position(numbers.point(i).into())).collect();
+/// assert!(points.iter().all(|p| p.y < 1.0));
+/// assert!(points.iter().filter(|p| p.x >= 1.0).count().abs_diff(200) <= 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Warp<'m> {
     map: &'m ImageMap,

@@ -6,6 +6,24 @@ use super::Importance;
 use crate::domain::{Disc, Domain};
 
 /// An importance given by two closures: its value at a point, and an upper bound over a region.
+///
+/// ```
+/// use glam::{DVec2, Vec2};
+/// use twelvefold::{Amount, Disc, Domain, Function, Placement, Sampling};
+/// // A lens that sees best in the middle of a 4 × 3 screen: 1/(1 + r²).
+/// let middle = DVec2::new(2.0, 1.5);
+/// let acuity = Function::new(
+///     |p: DVec2| 1.0 / (1.0 + p.distance_squared(middle)),
+///     |r: &Disc| 1.0 / (1.0 + (r.center.distance(middle) - r.radius).max(0.0).powi(2)),
+/// );
+/// let placement = Placement::new(Domain::new(DVec2::ZERO, DVec2::new(4.0, 3.0))?, 3);
+/// // 50 a unit of area where the acuity is 1.
+/// let sampling = Sampling::new(&placement, &acuity, Amount::Density(50.0))?;
+/// let mut rays = [Vec2::ZERO; 512];
+/// let filled = sampling.fill(&mut rays)?;
+/// assert!(filled.complete && filled.written > 100);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Function<V, B> {
     value: V,

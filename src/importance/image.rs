@@ -59,6 +59,22 @@ impl ImageMap {
     /// # Errors
     /// [`MapError::OutsideMap`] for another size, [`MapError::InvalidPixel`] for the first pixel that
     /// `invalid` does not admit; the map is then unchanged.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use twelvefold::{ImageMap, Importance, InvalidPixels, MapError, PixelData, PixelView, Pixels};
+    /// let black = Pixels::new(640, 360, vec![0.0; 640 * 360], InvalidPixels::Reject)?;
+    /// let mut map = ImageMap::new(black)?;
+    /// // Each frame, from a renderer's buffer whose rows begin 1,024 bytes apart.
+    /// let buffer = vec![128u8; 360 * 1024];
+    /// let frame = PixelView::strided(PixelData::U8(&buffer), 640, 360, 1024)?;
+    /// map.update(&frame, InvalidPixels::Reject)?;
+    /// // Or a patch of it alone: 2 × 2 pixels at column 10, row 20.
+    /// let lamp = PixelView::new(PixelData::F32(&[9.0; 4]), 2, 2)?;
+    /// map.update_at(10, 20, &lamp, InvalidPixels::Reject)?;
+    /// assert_eq!(map.value(DVec2::new(11.5, 20.5)), 9.0);
+    /// # Ok::<(), MapError>(())
+    /// ```
     pub fn update(&mut self, view: &PixelView<'_>, invalid: InvalidPixels) -> Result<(), MapError> {
         if (view.width, view.height) != self.size() {
             return Err(MapError::OutsideMap);

@@ -141,6 +141,24 @@ impl<'a, I: Importance> Sampling<'a, I> {
     ///
     /// # Errors
     /// [`SamplingError::NoDisplacements`] if the placement's tables have no relaxed offsets.
+    ///
+    /// ```
+    /// use glam::Vec2;
+    /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling};
+    /// let placement = Placement::new(Domain::UNIT, 7);
+    /// let fixed = Sampling::new(&placement, &Constant::ONE, Amount::Points(1000.0))?;
+    /// let even = fixed.relaxed()?;
+    /// let least = |sampling: &Sampling<'_, Constant>| {
+    ///     let mut points = [Vec2::ZERO; 1200];
+    ///     let written = sampling.fill(&mut points)?.written;
+    ///     let pairs = (0..written).flat_map(|i| (0..i).map(move |j| (i, j)));
+    ///     Ok::<_, twelvefold::SamplingError>(
+    ///         pairs.map(|(i, j)| points[i].distance(points[j])).fold(1.0, f32::min),
+    ///     )
+    /// };
+    /// assert!(least(&even)? > 1.2 * least(&fixed)?);
+    /// # Ok::<(), twelvefold::SamplingError>(())
+    /// ```
     pub fn relaxed(self) -> Result<Self, SamplingError> {
         match self.placement.tables().displacements() {
             Some(displacements) => Ok(Self { displacements: Some(displacements), ..self }),
