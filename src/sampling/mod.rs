@@ -58,6 +58,8 @@ pub struct Sampling<'a, I> {
     limits: Limits,
     /// By what points are moved, if they are.
     displacements: Option<&'a DisplacementTable<'a>>,
+    /// Whether it is known that moved points may go anywhere in the domain.
+    unconstrained: bool,
     clip: Clip,
 }
 
@@ -117,6 +119,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
             expected,
             limits,
             displacements: None,
+            unconstrained: false,
             clip: Clip::domain(&domain),
         };
         let region = domain.disc();
@@ -161,9 +164,20 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// ```
     pub fn relaxed(self) -> Result<Self, SamplingError> {
         match self.placement.tables().displacements() {
-            Some(displacements) => Ok(Self { displacements: Some(displacements), ..self }),
+            Some(displacements) => {
+                let domain = self.placement.domain().disc();
+                let unconstrained = self.importance.longest_constraint() <= 0.0
+                    && self.importance.lower_bound(&domain) > 0.0;
+                Ok(Self { displacements: Some(displacements), unconstrained, ..self })
+            }
             None => Err(SamplingError::NoDisplacements),
         }
+    }
+
+    /// Whether it is known that moved points may go anywhere in the domain: the importance is nowhere 0.
+    #[inline]
+    pub(crate) fn unconstrained(&self) -> bool {
+        self.unconstrained
     }
 
     /// The displacements by which points are moved, in relaxed mode.

@@ -163,7 +163,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         };
         let frames = [frame(0), frame(1), frame(2)];
         let len = chunk.len.min(CHUNK);
-        let free = self.nothing_constrains();
+        let free = self.sampling.unconstrained() || self.nothing_constrains();
         for start in (0..len).step_by(RUN) {
             self.move_run(chunk, start..len.min(start + RUN), &formulas, &frames, free);
         }
