@@ -181,12 +181,6 @@ impl<'a> Tables<'a> {
         self.depth
     }
 
-    /// The deepest level whose ranks exist, counted from the root.
-    #[must_use]
-    pub fn levels(&self) -> usize {
-        MAX_LEVEL
-    }
-
     /// The production rules with their digits. Derived anew, some microseconds.
     #[must_use]
     pub fn rules(&self) -> Rules {

@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write as _};
 
 use sha2::{Digest as _, Sha256};
 use twelvefold::Tables;
-use twelvefold::tiling::TileType;
+use twelvefold::tiling::{MAX_LEVEL, TileType};
 
 use twelvefold_files::failure::Failure;
 
@@ -37,6 +37,6 @@ fn description(tables: &Tables<'_>) -> String {
         tables.depth(),
         entries.join(", "),
         bytes.len(),
-        tables.levels(),
+        MAX_LEVEL,
     )
 }
