@@ -10,7 +10,7 @@ use crate::bake::displacement::{DisplacementError, Displacements};
 use crate::bake::format::{self, Document};
 use crate::bake::{self, MAX_DEPTH};
 use crate::tiling::children::MAX_CHILDREN;
-use crate::tiling::{Digits, DigitsError, MAX_LEVEL, Rules, TileType};
+use crate::tiling::{Digits, DigitsError, Rules, TileType};
 
 pub use block::BlockTable;
 pub(crate) use block::Offsets;
