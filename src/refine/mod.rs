@@ -62,10 +62,12 @@ use threads::{PART, for_parts};
 /// Iterations after which more gain little: the default of the program.
 pub const ITERATIONS: usize = 10;
 
-/// Share of the last move that a dot keeps.
-const MOMENTUM: f32 = 0.4;
-/// Pixels a unit of force. The kernel's curvature is 12.73 / R⁴ for a spacing of 1; steps above .2 clump.
-const STEP: f32 = 0.15 * 12.732 / (force::REACH * force::REACH * force::REACH * force::REACH);
+/// Share of the last move that a dot keeps. Ten iterations with .4 leave the nearest dots nearer (first
+/// percentile of distances .719 of hexagonal, .730 with .5); .7 overshoots.
+const MOMENTUM: f32 = 0.5;
+/// Pixels a unit of force. The kernel's curvature is 12.73 / R⁴ for a spacing of 1. .15 is slower (structural
+/// similarity .683 after ten iterations at 15,000 dots, .6855 with .2); steps above .2 clump.
+const STEP: f32 = 0.2 * 12.732 / (force::REACH * force::REACH * force::REACH * force::REACH);
 /// The furthest that the force moves a dot in one iteration, in spacings.
 const FURTHEST: f32 = 0.3;
 
