@@ -110,6 +110,64 @@ impl Cells {
     }
 }
 
+impl Cells {
+    /// Side of a cell, in pixels.
+    pub(super) fn side(&self) -> f64 {
+        1.0 / f64::from(self.per_pixel)
+    }
+
+    /// Columns and rows of cells.
+    pub(super) fn size(&self) -> [usize; 2] {
+        [self.across, self.down]
+    }
+
+    /// Column and row of the cell of a place.
+    #[inline(always)]
+    pub(super) fn at(&self, x: f32, y: f32) -> [usize; 2] {
+        [self.column(x), self.row(y)]
+    }
+
+    /// How many dots lie in the cell of this place.
+    pub(super) fn crowd(&self, x: f32, y: f32) -> usize {
+        let cell = self.row(y) * self.across + self.column(x);
+        (self.first[cell + 1] - self.first[cell]) as usize
+    }
+
+    /// The runs of dots in the cells that are `distance` away from that of (x, y), the longer way of the
+    /// two; none if all those lie beyond the borders.
+    pub(super) fn ring(
+        &self,
+        x: f32,
+        y: f32,
+        distance: usize,
+    ) -> impl Iterator<Item = core::ops::Range<usize>> + '_ {
+        let (column, row) = (self.column(x), self.row(y));
+        let top = row.saturating_sub(distance);
+        let bottom = (row + distance).min(self.down - 1);
+        let left = column.checked_sub(distance);
+        let right = Some(column + distance).filter(|right| *right < self.across);
+        let first = left.unwrap_or(0);
+        let last = right.unwrap_or(self.across - 1);
+        let between = move |row: usize, from: usize, to: usize| {
+            let start = row * self.across;
+            self.first[start + from] as usize..self.first[start + to + 1] as usize
+        };
+        let reached = row.checked_sub(distance).is_some()
+            || row + distance < self.down
+            || left.is_some()
+            || right.is_some();
+        let rows = if reached { top..bottom + 1 } else { 0..0 };
+        rows.flat_map(move |j| {
+            if j.abs_diff(row) == distance {
+                [Some(between(j, first, last)), None]
+            } else {
+                [left.map(|at| between(j, at, at)), right.map(|at| between(j, at, at))]
+            }
+        })
+        .flatten()
+    }
+}
+
 /// Dots from positions, or which one is not finite.
 pub(super) fn dots(
     points: impl ExactSizeIterator<Item = [f64; 2]>,

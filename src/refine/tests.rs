@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::{RefineError, Refiner, refine};
+use super::{RefineError, Refiner, best, refine};
 
 /// Places that look random: halves of a 64-bit mix of the index.
 fn scattered(n: usize, width: f64, height: f64) -> Vec<DVec2> {
@@ -58,6 +58,8 @@ fn dots_from_anywhere_end_on_ink_and_finite() {
                     _ => scattered(n, 1e9, 1e300),
                 };
                 refine(&mut points, *width, *height, pixels, 4).unwrap();
+                assert!(on_ink(&points, *width, *height, pixels), "{width}×{height} {n} {start}");
+                best(&mut points, *width, *height, pixels, start).unwrap();
                 assert!(on_ink(&points, *width, *height, pixels), "{width}×{height} {n} {start}");
             }
         }
