@@ -114,6 +114,11 @@ impl Coarse {
         }
     }
 
+    /// The sum of all squared surpluses, as measured. Dots of independent random places have about .4 a dot.
+    pub(super) fn unevenness(&self) -> f64 {
+        self.flow.surplus.iter().map(|surplus| f64::from(*surplus) * f64::from(*surplus)).sum()
+    }
+
     #[inline(always)]
     fn displacements(&mut self) {
         let (flow, mean) = (&self.flow, self.mean);

@@ -33,7 +33,7 @@
 //!
 //! # Stages
 //!
-//! `ink`: where dots may be. `density`: dots a pixel and spacing. `start`: dots as they came, made fit.
+//! `ink`: where dots may be. `density`: dots a pixel and spacing. `start` and `spread`: dots as they came, made fit.
 //! `cells`: who is near. `force`, then `coarse` and `conjugate`: the two moves. `polish`, with `power` and `share`: the
 //! one move that [`Refiner::polish`] adds. `threads`: who does which.
 
@@ -47,6 +47,7 @@ mod ink;
 mod polish;
 mod power;
 mod share;
+mod spread;
 mod start;
 #[cfg(test)]
 mod tests;
@@ -103,7 +104,8 @@ impl<'a> Refiner<'a> {
     /// a picture of `width` × `height` pixels, row by row: importance, 0 where no dot may be.
     ///
     /// Points outside of the picture and on pixels that are 0 are brought to the nearest pixel above
-    /// 0; points that lie on each other are parted.
+    /// 0; points that lie on each other are parted. Where there are far too many here and far too few there, as
+    /// with random points, all are handed out anew.
     ///
     /// # Errors
     /// Another number of pixels than width × height; a pixel that is NaN, infinite or negative; points but no
@@ -128,12 +130,12 @@ impl<'a> Refiner<'a> {
             #[inline(always)]
             || Density::new(&ink, dots.len()),
         )?;
-        start::prepare(&ink, &density, &mut dots)?;
         let cells = Cells::new(&ink, dots.len(), density.usual_spacing)?;
-        let coarse = Simd::detect().run(
+        let mut coarse = Simd::detect().run(
             #[inline(always)]
             || Coarse::new(&ink, &density, dots.len()),
         )?;
+        start::prepare(&ink, &density, &mut coarse, &mut dots)?;
         let sorted = filled(dots.len(), Dot::default())?;
         Ok(Self { work: Some(Work { ink, density, coarse, cells, dots, sorted }) })
     }
