@@ -104,8 +104,8 @@ impl<'a> Refiner<'a> {
     /// a picture of `width` × `height` pixels, row by row: importance, 0 where no dot may be.
     ///
     /// Points outside of the picture and on pixels that are 0 are brought to the nearest pixel above
-    /// 0; points that lie on each other are parted. Where there are far too many here and far too few there, as
-    /// with random points, all are handed out anew.
+    /// 0; points that lie on each other are parted. Each island of ink gets its share of the dots, and if they
+    /// come badly spread, as random points do, they are handed out anew everywhere.
     ///
     /// # Errors
     /// Another number of pixels than width × height; a pixel that is NaN, infinite or negative; points but no

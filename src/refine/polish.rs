@@ -39,6 +39,25 @@ pub(super) fn polish(
     cells: &Cells,
     dots: &mut [Dot],
 ) -> Result<(), RefineError> {
+    let shares = balanced(ink, density, cells, dots)?;
+    for (dot, share) in dots.iter_mut().zip(&shares) {
+        let [dx, dy] = share.center;
+        let (length, most) =
+            ((dx * dx + dy * dy).sqrt(), FURTHEST * f64::from(density.spacing(dot.x, dot.y)));
+        let less = if length > most { most / length } else { 1.0 };
+        let (x, y) = ink.slide(dot.x, dot.y, (dx * less) as f32, (dy * less) as f32);
+        (dot.x, dot.y, dot.vx, dot.vy) = (x, y, 0.0, 0.0);
+    }
+    Ok(())
+}
+
+/// What the cells of sorted dots hold, with weights that make it 1 for each, as far as islands of ink allow.
+pub(super) fn balanced(
+    ink: &Ink<'_>,
+    density: &Density,
+    cells: &Cells,
+    dots: &[Dot],
+) -> Result<Vec<Share>, RefineError> {
     let mut weights = filled(dots.len(), 0.0_f64)?;
     let mut shares = filled(dots.len(), Share::default())?;
     let mut newton = Newton::new(dots.len())?;
@@ -50,15 +69,7 @@ pub(super) fn polish(
         }
     }
     measure(ink, density, cells, dots, &weights, &mut shares)?;
-    for (dot, share) in dots.iter_mut().zip(&shares) {
-        let [dx, dy] = share.center;
-        let (length, most) =
-            ((dx * dx + dy * dy).sqrt(), FURTHEST * f64::from(density.spacing(dot.x, dot.y)));
-        let less = if length > most { most / length } else { 1.0 };
-        let (x, y) = ink.slide(dot.x, dot.y, (dx * less) as f32, (dy * less) as f32);
-        (dot.x, dot.y, dot.vx, dot.vy) = (x, y, 0.0, 0.0);
-    }
-    Ok(())
+    Ok(shares)
 }
 
 fn squared_spacing(density: &Density, dot: &Dot) -> f64 {

@@ -11,11 +11,8 @@ use super::spread::spread;
 /// of this library have .02 to .07 on photographs, independent random dots .4, a corner full of dots thousands.
 const UNFAIR: f64 = 0.2;
 
-/// Dots more or less than its share that half of a part may have in a start that is fair on the whole.
-const TOLERANCE: f64 = 0.6;
-
-/// Brings dots on white, or outside, to the nearest ink, hands them out anew if they are too many here and too few
-/// there, and parts those that lie on each other.
+/// Brings dots on white, or outside, to the nearest ink, gives each island of ink its share of them, or all of the picture
+/// if they come badly spread, and parts those that lie on each other.
 pub(super) fn prepare(
     ink: &Ink<'_>,
     density: &Density,
@@ -33,7 +30,7 @@ pub(super) fn prepare(
     }
     coarse.measure(dots);
     let unfair = coarse.unevenness() > UNFAIR * dots.len() as f64;
-    spread(ink, if unfair { 0.0 } else { TOLERANCE }, dots)?;
+    spread(ink, unfair, dots)?;
     part(ink, density, dots)
 }
 
