@@ -29,6 +29,8 @@ pub(super) struct Density {
     pub(super) margin: [usize; 2],
     /// Parts a pixel, along an axis: above 1 for divided pixels, below for groups.
     pub(super) parts_per_pixel: f32,
+    /// Spacing where the picture is darkest, in parts of pixels.
+    pub(super) finest: f64,
     /// Spacing in pixels, on whole pixels or groups of them.
     spacing: alloc::vec::Vec<f32>,
     across: usize,
@@ -144,6 +146,7 @@ impl Density {
             stride,
             margin,
             parts_per_pixel: parts_per_pixel as f32,
+            finest: black * parts_per_pixel,
             spacing,
             across,
             down,
@@ -159,6 +162,25 @@ impl Density {
         let column = ((x * self.groups_per_pixel) as usize).min(self.across - 1);
         let row = ((y * self.groups_per_pixel) as usize).min(self.down - 1);
         self.spacing[row * self.across + column]
+    }
+}
+
+impl Density {
+    pub(super) fn parts_per_pixel(&self) -> f64 {
+        f64::from(self.parts_per_pixel)
+    }
+
+    /// A place in parts of pixels from the corner of the margin.
+    pub(super) fn place(&self, x: f64, y: f64) -> [f64; 2] {
+        let parts = self.parts_per_pixel();
+        [x * parts + self.margin[0] as f64, y * parts + self.margin[1] as f64]
+    }
+
+    /// A row of `mass`, if there is one.
+    #[inline(always)]
+    pub(super) fn row(&self, row: usize) -> Option<&[f32]> {
+        let start = row.checked_mul(self.stride)?;
+        self.mass.get(start..start.checked_add(self.stride)?)
     }
 }
 

@@ -1,14 +1,22 @@
-//! Dots as they came, made fit to be refined.
+//! Dots as they came, made fit to be refined: on ink, where the picture asks for them, and not on each other.
 
 use super::cells::Dot;
+use super::coarse::Coarse;
 use super::density::Density;
 use super::error::{RefineError, reserve};
 use super::ink::{Ink, NearestInk};
+use super::spread::spread;
 
-/// Brings dots on white, or outside, to the nearest ink, and parts those that lie on each other.
+/// The mean square of a coarse cell's surplus, in shares of its dots, from which on they are handed out anew. Samplings
+/// of this library have .02 to .07 on photographs, independent random dots .4, a corner full of dots thousands.
+const UNFAIR: f64 = 0.2;
+
+/// Brings dots on white, or outside, to the nearest ink, gives each island of ink its share of them, or all of the picture
+/// if they come badly spread, and parts those that lie on each other.
 pub(super) fn prepare(
     ink: &Ink<'_>,
     density: &Density,
+    coarse: &mut Coarse,
     dots: &mut [Dot],
 ) -> Result<(), RefineError> {
     let mut nearest = None;
@@ -20,6 +28,9 @@ pub(super) fn prepare(
             (dot.x, dot.y) = nearest.bring(dot.x, dot.y);
         }
     }
+    coarse.measure(dots);
+    let unfair = coarse.unevenness() > UNFAIR * dots.len() as f64;
+    spread(ink, unfair, dots)?;
     part(ink, density, dots)
 }
 

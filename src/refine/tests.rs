@@ -1,11 +1,22 @@
 //! Laws of refining, and the force computed the slow way.
 
+extern crate std;
+
 use alloc::vec;
 use alloc::vec::Vec;
 
 use glam::DVec2;
+use glam::swizzles::Vec2Swizzles as _;
 
-use super::{RefineError, Refiner, refine};
+use super::cells::{Cells, dots};
+use super::conjugate::Flow;
+use super::density::Density;
+use super::force::{PULL, REACH, force};
+use super::ink::Ink;
+use super::polish::balanced;
+use super::power::{Cell, Power};
+use super::share::{Other, Share};
+use super::{RefineError, Refiner, best, refine};
 
 /// Places that look random: halves of a 64-bit mix of the index.
 fn scattered(n: usize, width: f64, height: f64) -> Vec<DVec2> {
@@ -59,6 +70,8 @@ fn dots_from_anywhere_end_on_ink_and_finite() {
                 };
                 refine(&mut points, *width, *height, pixels, 4).unwrap();
                 assert!(on_ink(&points, *width, *height, pixels), "{width}×{height} {n} {start}");
+                best(&mut points, *width, *height, pixels, start).unwrap();
+                assert!(on_ink(&points, *width, *height, pixels), "{width}×{height} {n} {start}");
             }
         }
     }
@@ -107,4 +120,338 @@ fn stopping_early_is_asking_for_fewer() {
     assert_eq!(asked, shown);
     let short = RefineError::Length { expected: 700, found: 699 };
     assert_eq!(refiner.write(&mut shown[1..]), Err(short));
+}
+
+/// A picture of pseudorandom grays with whole blocks of white.
+fn mask(width: usize, height: usize, seed: usize) -> Vec<f32> {
+    let values = scattered(width * height + seed, 1.0, 1.0);
+    let islands = scattered(64 + seed, 1.0, 1.0);
+    (0..width * height)
+        .map(|i| {
+            let block = i % width / 5 + 8 * (i / width / 5);
+            let white = islands[(block + seed) % islands.len()].x < 0.4;
+            if white { 0.0 } else { values[i + seed].y as f32 + 0.01 }
+        })
+        .collect()
+}
+
+/// Islands whose ink is what 7, 2, 15 and 40 of 64 dots draw.
+fn islands() -> Vec<f32> {
+    let mut pixels = vec![0.0_f32; 48 * 48];
+    for (x, y, side, ink) in [(3, 3, 5, 7.0), (30, 2, 2, 2.0), (5, 30, 9, 15.0), (26, 24, 20, 40.0)]
+    {
+        for j in y..y + side {
+            pixels[j * 48 + x..j * 48 + x + side].fill(ink / (side * side) as f32);
+        }
+    }
+    pixels
+}
+
+#[test]
+fn each_island_gets_its_share_from_any_start() {
+    let pixels = islands();
+    let starts = [
+        scattered(64, 48.0, 48.0),
+        vec![DVec2::splat(47.9); 64],
+        scattered(64, 3.0, 3.0),
+        vec![DVec2::new(30.2, 2.2); 64],
+    ];
+    for start in starts {
+        for polished in [false, true] {
+            let mut dots = start.clone();
+            let way = if polished { best } else { refine };
+            way(&mut dots, 48, 48, &pixels, 10).unwrap();
+            let counts = [[0, 0], [24, 0], [0, 24], [24, 24]].map(|[x, y]: [usize; 2]| {
+                let inside = |dot: &&DVec2| {
+                    (x..x + 24).contains(&(dot.x as usize))
+                        && (y..y + 24).contains(&(dot.y as usize))
+                };
+                dots.iter().filter(inside).count()
+            });
+            assert_eq!(counts, [7, 2, 15, 40]);
+        }
+    }
+}
+
+#[test]
+fn bad_starts_end_as_even_as_good_ones() {
+    let ramp: Vec<f32> = (0..60 * 60).map(|i| 0.2 + (i % 60) as f32 / 60.0).collect();
+    let unevenness = |start: &[DVec2]| {
+        let mut dots = start.to_vec();
+        refine(&mut dots, 60, 60, &ramp, 10).unwrap();
+        // counts of sixteenths of the ramp, cut across, against their ink
+        let ink = |k: usize| ramp[..60].iter().skip(k * 15).take(15).sum::<f32>() / 4.0;
+        let total: f32 = ramp[..60].iter().sum();
+        (0..16)
+            .map(|k| {
+                let (i, j) = (k % 4, k / 4);
+                let here = |dot: &&DVec2| dot.x as usize / 15 == i && dot.y as usize / 15 == j;
+                let count = dots.iter().filter(here).count() as f32;
+                (count - 500.0 * ink(i) / total).abs()
+            })
+            .fold(0.0, f32::max)
+    };
+    for start in
+        [scattered(500, 60.0, 60.0), scattered(500, 1.0, 1.0), vec![DVec2::new(59.5, 0.5); 500]]
+    {
+        let most = unevenness(&start);
+        assert!(most < 3.0, "{most}");
+    }
+}
+
+#[test]
+fn crowds_take_no_squares_of_time() {
+    // Two hot pixels at the ends of a slit: all dots in two cells of the grid, of which each would look at
+    // half of all. Narrowed, each looks at hundreds.
+    let mut pixels = vec![0.0_f32; 400 * 400];
+    (pixels[0], pixels[400 * 400 - 1]) = (1.0, 1.0);
+    let mut dots = vec![DVec2::ZERO; 30_000];
+    let begin = std::time::Instant::now();
+    best(&mut dots, 400, 400, &pixels, 2).unwrap();
+    let seconds = begin.elapsed().as_secs_f64();
+    assert!(on_ink(&dots, 400, 400, &pixels));
+    assert_eq!(dots.iter().filter(|dot| dot.x < 1.0).count(), 15_000);
+    // squares take 30 s here
+    assert!(seconds < 5.0, "{seconds}");
+}
+
+#[test]
+fn dots_keep_their_number_and_off_white() {
+    for seed in 0..24 {
+        let (width, height) = (9 + seed * 7 % 31, 8 + seed * 5 % 27);
+        let pixels = mask(width, height, seed);
+        let dots = scattered(3 + seed * 37 % 400, width as f64 + 9.0, height as f64);
+        for iterations in [0, 1, 5] {
+            let mut refined = dots.clone();
+            refine(&mut refined, width, height, &pixels, iterations).unwrap();
+            assert!(on_ink(&refined, width, height, &pixels), "{seed}");
+            best(&mut refined, width, height, &pixels, iterations).unwrap();
+            assert!(on_ink(&refined, width, height, &pixels), "{seed}");
+            let mut places: Vec<[u64; 2]> =
+                refined.iter().map(|dot| [dot.x.to_bits(), dot.y.to_bits()]).collect();
+            places.sort_unstable();
+            places.dedup();
+            assert_eq!(places.len(), dots.len(), "two dots on one place, {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_turned_over_has_its_dots_turned_over() {
+    let (width, height) = (40, 32);
+    // blocks of 3 × 2 pixels in three tones, which the start is fair to on the whole
+    let tone = |i: usize| (i % width / 3 + i / width / 2) % 3;
+    let pixels: Vec<f32> = (0..width * height).map(|i| 0.3 + 0.4 * tone(i) as f32).collect();
+    let mut start = scattered(300, 40.0, 32.0);
+    refine(&mut start, width, height, &pixels, 10).unwrap();
+    let mut dots = start.clone();
+    best(&mut dots, width, height, &pixels, 4).unwrap();
+    let mirrored: Vec<f32> =
+        pixels.chunks(width).flat_map(|row| row.iter().rev().copied()).collect();
+    let flip = |dot: &DVec2| DVec2::new(width as f64 - dot.x, dot.y);
+    let mut flipped: Vec<DVec2> = start.iter().map(flip).collect();
+    best(&mut flipped, width, height, &mirrored, 4).unwrap();
+    let turned: Vec<f32> =
+        (0..width * height).map(|i| pixels[i / height + i % height * width]).collect();
+    let mut transposed: Vec<DVec2> = start.iter().map(|dot| dot.yx()).collect();
+    best(&mut transposed, height, width, &turned, 4).unwrap();
+    for ((dot, flipped), transposed) in dots.iter().zip(&flipped).zip(&transposed) {
+        assert!(dot.distance(flip(flipped)) < 0.1, "{dot} {}", flip(flipped));
+        assert!(dot.distance(transposed.yx()) < 0.1, "{dot} {}", transposed.yx());
+    }
+}
+
+#[test]
+fn refined_dots_have_weights_that_make_all_cells_as_heavy() {
+    let (width, height) = (64, 64);
+    let pixels: Vec<f32> = (0..width * height).map(|i| 1.0 + (i % width) as f32 / 20.0).collect();
+    let mut refiner = Refiner::new(width, height, &pixels, &scattered(300, 64.0, 64.0)).unwrap();
+    (0..10).for_each(|_| refiner.step());
+    let work = refiner.work.as_mut().unwrap();
+    work.sort();
+    let shares = balanced(&work.ink, &work.density, &work.cells, &work.dots).unwrap();
+    let off: f64 = shares.iter().map(|share| (share.mass - 1.0).powi(2)).sum();
+    assert!((off / 300.0).sqrt() < 0.02, "{off}");
+}
+
+/// Sorted dots on a picture without white, and what surrounds them.
+fn scene(pixels: &[f32], width: usize, height: usize, n: usize) -> (Ink<'_>, Density, Cells) {
+    let ink = Ink::new(width, height, pixels).unwrap().unwrap();
+    let density = Density::new(&ink, n).unwrap();
+    let places = scattered(n, width as f64, height as f64);
+    let some = dots(places.iter().map(|place| place.to_array())).unwrap();
+    let mut sorted = some.clone();
+    let mut cells = Cells::new(&ink, n, density.usual_spacing).unwrap();
+    cells.sort(&some, &mut sorted);
+    (ink, density, cells)
+}
+
+#[test]
+fn the_force_is_the_sum_over_all_dots_and_pixels() {
+    let (width, height, n) = (36, 27, 90);
+    let pixels: Vec<f32> = scattered(width * height, 1.0, 1.0).iter().map(|p| p.x as f32).collect();
+    let (ink, density, cells) = scene(&pixels, width, height, n);
+    let per_value = n as f64 / ink.total;
+    let kernel = |dx: f64, dy: f64, reach: f64| {
+        let near = (1.0 - (dx * dx + dy * dy) / (reach * reach)).max(0.0).powi(3);
+        DVec2::new(dx, dy) * near
+    };
+    // the place itself and its eight mirror images
+    let images = |x: f64, y: f64| {
+        let across = [x, -x, 2.0 * width as f64 - x];
+        let down = [y, -y, 2.0 * height as f64 - y];
+        across.into_iter().flat_map(move |x| down.map(|y| (x, y)))
+    };
+    for at in 0..n {
+        let (x, y) = (cells.x[at], cells.y[at]);
+        let spacing = density.spacing(x, y);
+        let found = force(&cells, &density, [width as f32, height as f32], [x, y], spacing);
+        let (x, y, spacing) = (f64::from(x), f64::from(y), f64::from(spacing));
+        let (repulsion, pull) = (f64::from(REACH) * spacing, f64::from(PULL) * spacing);
+        let mut expected = DVec2::ZERO;
+        for other in 0..n {
+            for (u, v) in images(f64::from(cells.x[other]), f64::from(cells.y[other])) {
+                expected += kernel(x - u, y - v, repulsion);
+            }
+        }
+        let gain = (repulsion / pull).powi(4) * per_value;
+        for (i, value) in pixels.iter().enumerate() {
+            // pixels in the parts that the density is kept in
+            let parts = density.parts_per_pixel();
+            let pieces = parts.round() as usize;
+            for piece in 0..pieces * pieces {
+                let (a, b) = ((piece % pieces) as f64 + 0.5, (piece / pieces) as f64 + 0.5);
+                let (u, v) = ((i % width) as f64 + a / parts, (i / width) as f64 + b / parts);
+                let mass = gain * f64::from(*value) / (parts * parts);
+                for (u, v) in images(u, v) {
+                    expected -= mass * kernel(x - u, y - v, pull);
+                }
+            }
+        }
+        let found = DVec2::new(f64::from(found[0]), f64::from(found[1]));
+        assert!(found.distance(expected) < 1e-4 * (1.0 + spacing), "{found} {expected}");
+    }
+}
+
+#[test]
+fn conjugate_gradients_solve_what_elimination_solves() {
+    let (across, down) = (5, 4);
+    let n = across * down;
+    let conductance = |a: usize, b: usize| ((a * 7 + b * 3) % 11) as f32 * 0.3 + 0.1;
+    let screen = |cell: usize| 0.02 + (cell % 3) as f32 * 0.1;
+    let mut flow = Flow::new(across, down, conductance, screen).unwrap();
+    let mut matrix = vec![vec![0.0_f64; n + 1]; n];
+    for cell in 0..n {
+        let (i, j) = (cell % across, cell / across);
+        matrix[cell][cell] += f64::from(screen(cell));
+        let right = (i + 1 < across).then_some(cell + 1);
+        let below = (j + 1 < down).then_some(cell + across);
+        for other in [right, below].into_iter().flatten() {
+            let conductance = f64::from(conductance(cell, other));
+            matrix[cell][cell] += conductance;
+            matrix[other][other] += conductance;
+            matrix[cell][other] -= conductance;
+            matrix[other][cell] -= conductance;
+        }
+        let surplus = ((cell * 5) % 7) as f32 - 3.0;
+        matrix[cell][n] = f64::from(surplus);
+        let at = flow.at(i, j);
+        flow.surplus[at] = surplus;
+    }
+    // Gauss and Jordan; the matrix needs no pivots
+    for k in 0..n {
+        let pivot = matrix[k].clone();
+        for row in (0..n).filter(|row| *row != k) {
+            let share = matrix[row][k] / pivot[k];
+            for (to, from) in matrix[row].iter_mut().zip(&pivot) {
+                *to -= share * from;
+            }
+        }
+    }
+    // Each call goes on until a thousandth of the square is left; what is left of the surplus is solved again.
+    let mut solved = vec![0.0_f64; n];
+    for _ in 0..6 {
+        flow.solve();
+        for (cell, sum) in solved.iter_mut().enumerate() {
+            *sum += f64::from(flow.potential[flow.at(cell % across, cell / across)]);
+        }
+    }
+    for (cell, solved) in solved.iter().enumerate() {
+        let expected = matrix[cell][n] / matrix[cell][cell];
+        assert!((solved - expected).abs() < 1e-3 * (1.0 + expected.abs()), "{solved} {expected}");
+    }
+}
+
+#[test]
+fn a_cell_is_what_is_nearest_by_weight() {
+    let (width, height, n) = (30, 24, 60);
+    let pixels: Vec<f32> =
+        scattered(width * height, 1.0, 1.0).iter().map(|p| 0.2 + p.x as f32).collect();
+    let (ink, density, cells) = scene(&pixels, width, height, n);
+    let weights: Vec<f64> = scattered(n, 6.0, 1.0).iter().map(|place| place.x).collect();
+    // every place of a fine grid belongs to the dot with the least squared distance less weight
+    const FINE: usize = 12;
+    let mut masses = vec![[0.0_f64; 3]; n];
+    let per_sample = n as f64 / ink.total / (FINE * FINE) as f64;
+    for j in 0..height * FINE {
+        for i in 0..width * FINE {
+            let place = DVec2::new(i as f64 + 0.5, j as f64 + 0.5) / FINE as f64;
+            let power = |at: &usize| {
+                let dot = DVec2::new(f64::from(cells.x[*at]), f64::from(cells.y[*at]));
+                dot.distance_squared(place) - weights[*at]
+            };
+            let owner = (0..n).min_by(|one, other| power(one).total_cmp(&power(other))).unwrap();
+            let mass = per_sample * f64::from(pixels[j / FINE * width + i / FINE]);
+            masses[owner][0] += mass;
+            masses[owner][1] += mass * place.x;
+            masses[owner][2] += mass * place.y;
+        }
+    }
+    let power = Power::new(&ink, &cells, &weights).unwrap();
+    let (mut cell, mut room) = (Cell::EMPTY, Cell::EMPTY);
+    for (at, [mass, x, y]) in masses.into_iter().enumerate() {
+        power.cell(at, 20.0, &mut cell, &mut room);
+        let place = [f64::from(cells.x[at]), f64::from(cells.y[at])];
+        let other = |_: u32| Other { distance: 1.0, floor: 0.0 };
+        let share = Share::new(&density, &cell, at as u32, place, other);
+        assert!((share.mass - mass).abs() < 0.03, "{} {mass}", share.mass);
+        if mass > 0.2 {
+            let center = DVec2::from(share.center) + DVec2::from(place);
+            assert!(center.distance(DVec2::new(x, y) / mass) < 0.1, "{center}");
+        }
+    }
+}
+
+#[test]
+fn the_same_dots_everywhere() {
+    // Bits of a small refined and polished set, the same on every machine and for any number of threads.
+    let pixels: Vec<f32> = (0..48 * 40).map(|i| ((i % 48) * (i / 48) % 97) as f32).collect();
+    let mut points = scattered(1300, 48.0, 40.0);
+    best(&mut points, 48, 40, &pixels, 3).unwrap();
+    let hash = points
+        .iter()
+        .flat_map(|p| [p.x.to_bits(), p.y.to_bits()])
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, bits| {
+            (hash ^ bits).wrapping_mul(0x0100_0000_01b3).rotate_left(23)
+        });
+    assert_eq!(hash, GOLDEN, "{hash:#x}");
+}
+
+/// Of [`the_same_dots_everywhere`]; it changes when the method does, and with nothing else.
+const GOLDEN: u64 = 0xd918_6f0f_38a2_a1c6;
+
+#[cfg(feature = "parallel")]
+#[test]
+fn any_number_of_threads_places_the_same_dots() {
+    let pixels = mask(90, 70, 3);
+    let start = scattered(2500, 90.0, 70.0);
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut dots = start.clone();
+        pool.install(|| best(&mut dots, 90, 70, &pixels, 4)).unwrap();
+        dots
+    };
+    let one = run(1);
+    assert_eq!(one, run(2));
+    assert_eq!(one, run(3));
 }

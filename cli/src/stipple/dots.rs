@@ -25,6 +25,8 @@ pub(crate) struct Wish {
     pub(crate) seed: u64,
     /// Iterations.
     pub(crate) refine: usize,
+    /// Polished after them.
+    pub(crate) best: bool,
     /// In an order of which each beginning is itself a good set.
     pub(crate) ranked: bool,
 }
@@ -45,9 +47,9 @@ impl Count {
     }
 }
 
-/// The iterations for so many dots, if nobody says.
-pub(crate) fn default_iterations(count: f64) -> usize {
-    if count < STREAMED { ITERATIONS } else { 0 }
+/// The iterations for so many dots, if nobody says; `best` dots are always refined.
+pub(crate) fn default_iterations(count: f64, best: bool) -> usize {
+    if count < STREAMED || best { ITERATIONS } else { 0 }
 }
 
 /// Why there are no dots, or no more of them.
@@ -115,7 +117,7 @@ pub(crate) fn list<E>(
         return unrefined(picture, wish);
     }
     let mut dots = unrefined(copy(&picture)?, wish)?;
-    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    refined(&picture, &mut dots, wish, iteration).map_err(DotsError::Refine)?;
     Ok(dots)
 }
 
@@ -152,12 +154,16 @@ fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>
 fn refined(
     picture: &Picture,
     dots: &mut [DVec2],
-    iterations: usize,
+    wish: Wish,
     mut iteration: impl FnMut(),
 ) -> Result<(), RefineError> {
     let mut refiner = Refiner::new(picture.width, picture.height, &picture.importance, dots)?;
-    for _ in 0..iterations {
+    for _ in 0..wish.refine {
         refiner.step();
+        iteration();
+    }
+    if wish.best {
+        refiner.polish()?;
         iteration();
     }
     refiner.write(dots)

@@ -50,6 +50,8 @@ pub(crate) struct Plan {
 #[derive(Debug)]
 pub(crate) enum PlanError {
     NoRoom(NoRoom),
+    /// The best dots are refined ones.
+    BestUnrefined,
     /// A unit, where only pixels can be meant.
     UnitWithoutPage,
     /// A dot of a pen has the pen's width.
@@ -77,6 +79,7 @@ impl PlanError {
     pub(crate) fn option(&self) -> &'static str {
         match self {
             Self::NoRoom(_) => "--margin",
+            Self::BestUnrefined => "--best",
             Self::UnitWithoutPage | Self::DotSizeOfPen | Self::DotBelowPen { .. } => "--dot-size",
             Self::RingWithoutPen => "--marks ring",
             Self::TooMany { .. } | Self::TooManyToOrder { .. } => "--points",
@@ -88,6 +91,9 @@ impl fmt::Display for PlanError {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoRoom(error) => error.fmt(out),
+            Self::BestUnrefined => {
+                out.write_str("moves refined dots, and --refine 0 asks for none")
+            }
             Self::UnitWithoutPage => {
                 out.write_str("is in pixels of the photograph; a length needs a --page")
             }
@@ -120,6 +126,9 @@ impl Plan {
         picture: &Picture,
         format: Format,
     ) -> Result<Self, PlanError> {
+        if options.best && options.refine == Some(0) {
+            return Err(PlanError::BestUnrefined);
+        }
         let paper = &options.paper;
         let black = picture.total();
         let asked = options.exact.or(options.points).map(|count| count as f64);
@@ -171,7 +180,10 @@ impl Plan {
             },
             centers: options.centers.unwrap_or(Centers::Relaxed),
             seed: options.seed,
-            refine: options.refine.map_or(dots::default_iterations(count), usize::from),
+            refine: options
+                .refine
+                .map_or(dots::default_iterations(count, options.best), usize::from),
+            best: options.best,
             ranked: order == Order::Rank,
         };
         Ok(Self {
@@ -293,5 +305,5 @@ fn look(
 
 /// Whether dots that nobody asked to refine are not refined because there are so many.
 pub(crate) fn streams_unasked(options: &StippleOptions, wish: &Wish) -> bool {
-    options.refine.is_none() && wish.count.number() >= STREAMED
+    options.refine.is_none() && !options.best && wish.count.number() >= STREAMED
 }
