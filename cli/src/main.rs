@@ -4,6 +4,8 @@
 mod args;
 mod command;
 mod drawing;
+#[allow(dead_code, unused_imports, reason = "until stipple takes pens")]
+mod pens;
 
 use std::io::Write as _;
 use std::process::ExitCode;
