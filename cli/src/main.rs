@@ -4,8 +4,11 @@
 mod args;
 mod command;
 mod drawing;
+mod order;
+mod page;
 #[allow(dead_code, unused_imports, reason = "until stipple takes pens")]
 mod pens;
+mod stipple;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -15,7 +18,7 @@ use clap::Parser as _;
 use twelvefold_files::failure::Failure;
 
 use crate::args::{Arguments, Command};
-use crate::command::{envmap, measure, stipple, tables, tiling};
+use crate::command::{envmap, measure, tables, tiling};
 
 fn main() -> ExitCode {
     match process(&Arguments::parse()) {
@@ -30,7 +33,7 @@ fn main() -> ExitCode {
 
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
-        Command::Stipple(options) => stipple::run(options),
+        Command::Stipple(options) => command::stipple::run(options),
         Command::Envmap(options) => envmap::run(options),
         Command::Measure(options) => measure::run(options),
         Command::Tables => tables::run(),
