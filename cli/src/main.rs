@@ -6,7 +6,6 @@ mod command;
 mod drawing;
 mod order;
 mod page;
-#[allow(dead_code, unused_imports, reason = "until stipple takes pens")]
 mod pens;
 mod stipple;
 

@@ -65,7 +65,11 @@ impl fmt::Display for RefineError {
                 write!(f, "a buffer of {found} for {expected} dots")
             }
             Self::Classes { count } => {
-                write!(f, "{count} classes of dots; from 1 to {} are possible", super::Classes::MOST)
+                write!(
+                    f,
+                    "{count} classes of dots; from 1 to {} are possible",
+                    super::Classes::MOST
+                )
             }
             Self::Memory { bytes } => write!(f, "refining needs {bytes} bytes more than there are"),
         }

@@ -1,10 +1,12 @@
-//! Several pens: their colours, and how much of each a place of the picture needs.
+//! Several pens: their colors, and how much of each a place of the picture needs.
 
+mod inks;
 mod list;
 mod separation;
 
-pub(crate) use list::{Pen, PenError, parse};
-pub(crate) use separation::{Amounts, Separation};
+pub(crate) use inks::{Inks, InksError};
+pub(crate) use list::{Pen, Pens};
+use separation::Separation;
 
-/// The most pens of one drawing: more than any carousel holds, and few enough to try all mixtures.
+/// The most pens of one drawing: more than any carousel holds.
 pub(crate) const MAX_PENS: usize = 12;

@@ -1,17 +1,18 @@
-//! How much of each pen makes a colour.
+//! How much of each pen makes a color.
 //!
 //! Dots of all pens lie side by side and do not overlap, so that from afar light adds up by area: a place
 //! whose share a_k is covered with ink k reflects paper + Σ a_k (ink_k − paper), in linear light. The
 //! amounts that come nearest to the wanted light, none negative and all together no more than fits,
-//! are a small quadratic problem with one optimum for each colour:
+//! are a small quadratic problem with one optimum for each color:
 //!
 //! minimise |Σ a_k d_k − (light − paper)|² + Σ c_k a_k,  a ≥ 0, Σ a ≤ most,  d_k = ink_k − paper.
 //!
-//! The small cost c decides where several mixtures make one colour (gray from black alone, or from
-//! coloured inks and less black). It is solved once on a lattice of colours; between its nodes amounts
+//! The small cost c decides where several mixtures make one color (gray from black alone, or from
+//! colored inks and less black). It is solved once on a lattice of colors; between its nodes amounts
 //! are interpolated, which keeps them positive and within what fits, since both are convex.
 
 use super::{MAX_PENS, Pen};
+use crate::page::color::Color;
 
 /// Nodes of the lattice a side. The nodes are even in the square root of light, close to how the eye
 /// divides it; at 33 the greatest error of interpolation is below .01 of light (see the tests).
@@ -26,29 +27,29 @@ const SUM_WEIGHT: f64 = 30.0;
 /// The share of an area that each pen covers, in the order of the pens; the rest is 0.
 pub(crate) type Amounts = [f32; MAX_PENS];
 
-/// Amounts for every colour, on a lattice.
+/// Amounts for every color, on a lattice.
 #[derive(Debug)]
 pub(crate) struct Separation {
     nodes: Vec<Amounts>,
 }
 
-/// Light (linear, 0..=1 for each of red, green and blue) of an encoded sRGB colour.
-fn light_of([red, green, blue]: [u8; 3]) -> [f64; 3] {
+/// Light (linear, 0..=1 for each of red, green and blue) of an encoded sRGB color.
+fn light_of(Color([red, green, blue]): Color) -> [f64; 3] {
     [red, green, blue].map(|c| twelvefold_files::picture::srgb::decode(f64::from(c) / 255.0))
 }
 
 impl Separation {
-    /// Prepares all colours for these pens on a paper.
+    /// Prepares all colors for these pens on a paper.
     ///
     /// `most` is the share of an area that dots of all pens together may cover, in (0, 1]. `gray` from 0
-    /// to 1 says how far the darkest pen replaces coloured ones that together make gray: 1, as far as it
+    /// to 1 says how far the darkest pen replaces colored ones that together make gray: 1, as far as it
     /// can; 0, only where the others cannot.
-    pub(crate) fn new(pens: &[Pen], paper: [u8; 3], most: f64, gray: f64) -> Self {
+    pub(crate) fn new(pens: &[Pen], paper: Color, most: f64, gray: f64) -> Self {
         let paper = light_of(paper);
         let inks: Vec<[f64; 3]> = pens
             .iter()
             .map(|pen| {
-                let ink = light_of(pen.srgb);
+                let ink = light_of(pen.color);
                 [0, 1, 2].map(|c| ink[c] - paper[c])
             })
             .collect();
@@ -79,7 +80,7 @@ impl Separation {
 
     /// The amounts for a light (linear red, green and blue; what is outside 0..=1 counts as its nearest).
     pub(crate) fn amounts(&self, light: [f32; 3]) -> Amounts {
-        // Tetrahedra rather than cubes: four nodes a colour, and grays stay on their diagonal.
+        // Tetrahedra rather than cubes: four nodes a color, and grays stay on their diagonal.
         let mut base = [0; 3];
         let mut rest = [0.0f32; 3];
         for c in 0..3 {
@@ -208,16 +209,20 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parse;
+    use super::super::Pens;
     use super::*;
 
-    const WHITE: [u8; 3] = [255; 3];
+    const WHITE: Color = Color::WHITE;
+
+    fn parse(text: &str) -> Vec<Pen> {
+        text.parse::<Pens>().unwrap().on(WHITE).unwrap()
+    }
 
     /// What the amounts reflect.
     fn mixed(pens: &[Pen], amounts: &Amounts) -> [f64; 3] {
         let mut light = [1.0; 3];
         for (pen, amount) in pens.iter().zip(amounts) {
-            let ink = light_of(pen.srgb);
+            let ink = light_of(pen.color);
             for c in 0..3 {
                 light[c] += f64::from(*amount) * (ink[c] - 1.0);
             }
@@ -232,7 +237,7 @@ mod tests {
 
     #[test]
     fn one_black_pen_covers_what_is_dark() {
-        let pens = parse("black", WHITE).unwrap();
+        let pens = parse("black");
         let separation = Separation::new(&pens, WHITE, 1.0, 1.0);
         for gray in [0.0f32, 0.01, 0.2, 0.5, 0.75, 1.0] {
             let [black, ..] = separation.amounts([gray; 3]);
@@ -243,7 +248,7 @@ mod tests {
     #[test]
     fn mixtures_of_the_inks_come_back() {
         for list in ["cmyk", "black,#c33,teal", "red,green,blue,yellow,black"] {
-            let pens = parse(list, WHITE).unwrap();
+            let pens = parse(list);
             let separation = Separation::new(&pens, WHITE, 1.0, 1.0);
             for i in 0..200 {
                 // A mixture that fits.
@@ -268,7 +273,7 @@ mod tests {
 
     #[test]
     fn no_more_is_covered_than_may_be_and_white_is_left_alone() {
-        let pens = parse("cmyk", WHITE).unwrap();
+        let pens = parse("cmyk");
         let separation = Separation::new(&pens, WHITE, 0.8, 0.5);
         for i in 0..500 {
             let light = [0, 1, 2].map(|c| noise(3 * i + c) as f32);
@@ -281,8 +286,8 @@ mod tests {
     }
 
     #[test]
-    fn gray_is_black_where_asked_for_and_colours_where_not() {
-        let pens = parse("cmyk", WHITE).unwrap();
+    fn gray_is_black_where_asked_for_and_colors_where_not() {
+        let pens = parse("cmyk");
         let black = |gray| Separation::new(&pens, WHITE, 1.0, gray).amounts([0.7; 3])[3];
         assert!(black(1.0) > black(0.0) + 0.05, "{} {}", black(1.0), black(0.0));
     }

@@ -15,9 +15,11 @@ pub(super) fn assign(classes: &Classes, dots: &[Dot]) -> Result<Vec<u8>, RefineE
     let mut order = reserve::<(u32, u32)>(dots.len())?;
     let longest = classes.width.max(classes.height) as f32;
     let scale = (1_u32 << LEVELS) as f32 / longest;
-    order.extend(dots.iter().zip(0_u32..).map(|(dot, i)| {
-        (along([(dot.x * scale) as u32, (dot.y * scale) as u32]), i)
-    }));
+    order.extend(
+        dots.iter()
+            .zip(0_u32..)
+            .map(|(dot, i)| (along([(dot.x * scale) as u32, (dot.y * scale) as u32]), i)),
+    );
     order.sort_unstable();
     let mut class_of = reserve(dots.len())?;
     class_of.resize(dots.len(), 0);

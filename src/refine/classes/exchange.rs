@@ -10,11 +10,11 @@
 
 use alloc::vec::Vec;
 
+use super::super::Work;
 use super::super::cells::{Cells, LANES};
 use super::super::density::Density;
 use super::super::error::{RefineError, filled};
 use super::super::threads::{PART, for_parts};
-use super::super::Work;
 use super::Class;
 use crate::simd::Simd;
 

@@ -227,7 +227,8 @@ impl ClassWork<'_> {
     fn sort_classes(&mut self) {
         for (class, number) in self.classes.iter_mut().zip(0_u8..) {
             let Some(class) = class else { continue };
-            let own = self.all.dots.iter().filter(|dot| self.class_of[dot.index as usize] == number);
+            let own =
+                self.all.dots.iter().filter(|dot| self.class_of[dot.index as usize] == number);
             class.dots.iter_mut().zip(own).for_each(|(to, dot)| *to = *dot);
             class.cells.sort(&class.dots, &mut class.sorted);
         }
