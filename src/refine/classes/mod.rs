@@ -24,7 +24,7 @@ use super::threads::{PART, for_parts};
 use super::{FURTHEST, MOMENTUM, Refiner, STEP, Work, force};
 use crate::position::Position;
 use crate::simd::Simd;
-use exchange::Exchange;
+use exchange::{Exchange, Pyramid};
 
 /// Weight of the force of a dot's own class beside that of all dots, both in spacings of their own.
 const CLASS_FORCE: f32 = 0.3;
@@ -87,7 +87,7 @@ impl Classes {
 
 /// Dots of several classes on their way.
 ///
-/// Memory, beyond that of a [`Refiner`]: 60 bytes a dot, 8 more for each class; 8 bytes a pixel for each
+/// Memory, beyond that of a [`Refiner`]: 60 bytes a dot, 8 more for each class; 15 bytes a pixel for each
 /// class.
 ///
 /// ```
@@ -132,6 +132,7 @@ struct ClassWork<'a> {
 struct Class<'a> {
     ink: Ink<'a>,
     density: Density,
+    pyramid: Pyramid,
     cells: Cells,
     dots: Vec<Dot>,
     sorted: Vec<Dot>,
@@ -148,10 +149,11 @@ impl<'a> Class<'a> {
             #[inline(always)]
             || Density::new(&ink, count),
         )?;
+        let pyramid = Pyramid::new(&density)?;
         let cells = Cells::new(&ink, count, density.usual_spacing)?;
         let dots = filled(count, Dot::default())?;
         let sorted = filled(count, Dot::default())?;
-        Ok(Some(Self { ink, density, cells, dots, sorted }))
+        Ok(Some(Self { ink, density, pyramid, cells, dots, sorted }))
     }
 }
 
