@@ -108,10 +108,12 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
         colors.level(levels);
     }
     let gray = options.paper.gcr.unwrap_or(1.0);
-    let inks = Inks::new(&colors, pens, paper, PEN_SHARE, gray).map_err(|error| match error {
-        InksError::Memory { .. } => Failure::about("--pens", error),
-        InksError::Classes(_) => of_photo(options, error),
-    })?;
+    let inks = Inks::new(&colors, pens, paper, PEN_SHARE, options.paper.shadows, gray).map_err(
+        |error| match error {
+            InksError::Memory { .. } => Failure::about("--pens", error),
+            InksError::Classes(_) => of_photo(options, error),
+        },
+    )?;
     let mut importance = Vec::new();
     let total = inks.classes.total();
     importance.try_reserve_exact(total.len()).map_err(|_| {

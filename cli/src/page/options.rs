@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::color::Color;
 use super::length::{Length, PageSize, margin};
 use super::marks::Marks;
-use crate::pens::Pens;
+use crate::pens::{Pens, Shadows};
 
 /// Options for paper, pens and printers.
 #[derive(Debug, Args)]
@@ -39,9 +39,7 @@ pub(crate) struct PaperOptions {
 
     /// Draw in color, with these pens: `cmyk`, or CSS colors such as black,#c33,teal, at most 12.
     ///
-    /// Seen from afar, dots and paper have the photograph's colors, as far as these pens can make them; what
-    /// is darker is drawn as dark as can be, with 0.8 of the area covered (`--gamma 1.5` keeps more of
-    /// the shadows). No two dots overlap, of whichever pens, and those of each pen are even. The number of
+    /// Seen from afar, dots and paper have the photograph's colors, as far as these pens can make them. No two dots overlap, of whichever pens, and those of each pen are even. The number of
     /// dots is that of all pens together.
     ///
     /// Each pen has a layer of its own, light ones first: in SVG one that Inkscape knows, in PDF one that
@@ -49,6 +47,12 @@ pub(crate) struct PaperOptions {
     /// from 0. For dark paper name its color with `--paper`.
     #[arg(long, value_name = "PENS", conflicts_with_all = ["line", "invert", "linear", "dot_gain"])]
     pub(crate) pens: Option<Pens>,
+
+    /// What becomes of colors darker than `--pens` can make with 0.8 of the area covered: `clip` draws them as
+    /// dark as can be, and all others as they are; `keep` draws everything lighter, so that differences in
+    /// the shadows stay.
+    #[arg(long, value_enum, value_name = "HOW", requires = "pens", default_value = "clip")]
+    pub(crate) shadows: Shadows,
 
     /// How far the darkest pen replaces colored ones that together make gray, from 0 to 1 [default: 1, which
     /// takes the fewest dots; less has fewer dark dots among light ones].

@@ -5,7 +5,7 @@ use std::fmt;
 use twelvefold::refine::{Classes, RefineError};
 use twelvefold_files::picture::ColorPicture;
 
-use super::{Pen, Separation};
+use super::{Pen, Separation, Shadows};
 use crate::page::color::Color;
 
 /// The most bytes for what all pens draw of a picture: one gibibyte.
@@ -48,9 +48,8 @@ impl fmt::Display for InksError {
 impl std::error::Error for InksError {}
 
 impl Inks {
-    /// Divides a picture. `most` is the share of an area that all dots together may cover where they lie as
-    /// densely as can be; `gray`, from 0 to 1, is how far the darkest pen replaces others that together make
-    /// gray.
+    /// Divides a picture. `most` is the share of an area that all dots together cover where they lie as densely
+    /// as can be; for the rest see [`Separation::new`].
     ///
     /// # Errors
     /// [`InksError`].
@@ -59,6 +58,7 @@ impl Inks {
         pens: Vec<Pen>,
         paper: Color,
         most: f64,
+        shadows: Shadows,
         gray: f64,
     ) -> Result<Self, InksError> {
         // Every plane, and their sum twice: once for the map that is sampled.
@@ -67,7 +67,7 @@ impl Inks {
         if bytes.is_none_or(|bytes| bytes > MEMORY_LIMIT) {
             return Err(too_large());
         }
-        let separation = Separation::new(&pens, paper, most, gray);
+        let separation = Separation::new(&pens, paper, most, shadows, gray);
         let mut planes = Vec::new();
         for _ in &pens {
             let mut plane: Vec<f32> = Vec::new();

@@ -5,11 +5,16 @@
 //! amounts that come nearest to the wanted light, none negative and all together no more than fits,
 //! are a small quadratic problem with one optimum for each color:
 //!
-//! minimise |Σ a_k d_k − (light − paper)|² + Σ c_k a_k,  a ≥ 0, Σ a ≤ most,  d_k = ink_k − paper.
+//! minimise |Σ a_k d_k − (light − paper)|² + Σ c_k a_k,  a ≥ 0, Σ a ≤ 1,  d_k = ink_k − paper.
+//!
+//! Discs that do not overlap cover less than all of an area. Amounts that do not fit are scaled down together,
+//! which mixes the color with that of the paper: its hue stays.
 //!
 //! The small cost c decides where several mixtures make one color (gray from black alone, or from
 //! colored inks and less black). It is solved once on a lattice of colors; between its nodes amounts
 //! are interpolated, which keeps them positive and within what fits, since both are convex.
+
+use clap::ValueEnum;
 
 use super::{MAX_PENS, Pen};
 use crate::page::color::Color;
@@ -17,6 +22,15 @@ use crate::page::color::Color;
 /// Nodes of the lattice a side. The nodes are even in the square root of light, close to how the eye
 /// divides it; at 33 the greatest error of interpolation is below .01 of light (see the tests).
 const SIDE: usize = 33;
+
+/// What becomes of colors that are darker than dots which lie apart can make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Shadows {
+    /// As dark as can be, in their hue; all lighter colors come back as they are.
+    Clip,
+    /// They keep their differences: everything is drawn lighter, black as dark as can be.
+    Keep,
+}
 
 /// The cost of ink beside an error of light 1, squared: too little to change what can be made exactly.
 const INK_COST: f64 = 1e-3;
@@ -41,10 +55,11 @@ fn light_of(Color([red, green, blue]): Color) -> [f64; 3] {
 impl Separation {
     /// Prepares all colors for these pens on a paper.
     ///
-    /// `most` is the share of an area that dots of all pens together may cover, in (0, 1]. `gray` from 0
+    /// `most` is the share of an area that dots of all pens together may cover, in (0, 1]; `shadows` says what
+    /// becomes of colors that take more. `gray` from 0
     /// to 1 says how far the darkest pen replaces colored ones that together make gray: 1, as far as it
     /// can; 0, only where the others cannot.
-    pub(crate) fn new(pens: &[Pen], paper: Color, most: f64, gray: f64) -> Self {
+    pub(crate) fn new(pens: &[Pen], paper: Color, most: f64, shadows: Shadows, gray: f64) -> Self {
         let paper = light_of(paper);
         let inks: Vec<[f64; 3]> = pens
             .iter()
@@ -64,7 +79,7 @@ impl Separation {
             .chain([&[0.0; 3]])
             .map(|ink| [ink[0], ink[1], ink[2], SUM_WEIGHT])
             .collect();
-        let problem = Problem { columns, costs, most };
+        let problem = Problem { columns, costs };
         let value = |i: usize| {
             let root = i as f64 / (SIDE - 1) as f64;
             root * root
@@ -72,7 +87,15 @@ impl Separation {
         let nodes = (0..SIDE * SIDE * SIDE)
             .map(|i| {
                 let light = [value(i / (SIDE * SIDE)), value(i / SIDE % SIDE), value(i % SIDE)];
-                problem.solve([0, 1, 2].map(|c| light[c] - paper[c]))
+                let mut amounts = problem.solve([0, 1, 2].map(|c| light[c] - paper[c]));
+                let sum: f64 = amounts.iter().map(|amount| f64::from(*amount)).sum();
+                let scale = match shadows {
+                    Shadows::Keep => most,
+                    Shadows::Clip if sum > most => most / sum,
+                    Shadows::Clip => 1.0,
+                };
+                amounts.iter_mut().for_each(|amount| *amount *= scale as f32);
+                amounts
             })
             .collect();
         Self { nodes }
@@ -110,20 +133,19 @@ impl Separation {
 }
 
 /// The quadratic problem of one set of pens, bare paper among them: as many unknowns as pens and one, whose
-/// sum is `most`.
+/// sum is 1.
 struct Problem {
     /// Light taken away (or added) by a full cover of each ink, the paper's 0 last; and the weight of the
     /// sum.
     columns: Vec<[f64; 4]>,
     costs: Vec<f64>,
-    most: f64,
 }
 
 impl Problem {
     /// The amounts nearest to the change of light `wanted`: the active-set method of Lawson and Hanson
     /// (1974), with a linear cost.
     fn solve(&self, wanted: [f64; 3]) -> Amounts {
-        let goal = [wanted[0], wanted[1], wanted[2], SUM_WEIGHT * self.most];
+        let goal = [wanted[0], wanted[1], wanted[2], SUM_WEIGHT];
         let count = self.columns.len();
         let mut amounts = vec![0.0; count];
         let mut used: Vec<usize> = Vec::new();
@@ -163,7 +185,7 @@ impl Problem {
         }
         // The weight leaves the sum a little off.
         let total: f64 = amounts[..count - 1].iter().sum();
-        let shrink = if total > self.most { self.most / total } else { 1.0 };
+        let shrink = if total > 1.0 { 1.0 / total } else { 1.0 };
         let mut found = [0.0; MAX_PENS];
         for (to, from) in found.iter_mut().zip(&amounts[..count - 1]) {
             *to = (shrink * from) as f32;
@@ -238,7 +260,7 @@ mod tests {
     #[test]
     fn one_black_pen_covers_what_is_dark() {
         let pens = parse("black");
-        let separation = Separation::new(&pens, WHITE, 1.0, 1.0);
+        let separation = Separation::new(&pens, WHITE, 1.0, Shadows::Clip, 1.0);
         for gray in [0.0f32, 0.01, 0.2, 0.5, 0.75, 1.0] {
             let [black, ..] = separation.amounts([gray; 3]);
             assert!((black - (1.0 - gray)).abs() < 2e-3, "{gray}: {black}");
@@ -249,7 +271,7 @@ mod tests {
     fn mixtures_of_the_inks_come_back() {
         for list in ["cmyk", "black,#c33,teal", "red,green,blue,yellow,black"] {
             let pens = parse(list);
-            let separation = Separation::new(&pens, WHITE, 1.0, 1.0);
+            let separation = Separation::new(&pens, WHITE, 1.0, Shadows::Clip, 1.0);
             for i in 0..200 {
                 // A mixture that fits.
                 let mut amounts = [0.0f32; MAX_PENS];
@@ -274,7 +296,7 @@ mod tests {
     #[test]
     fn no_more_is_covered_than_may_be_and_white_is_left_alone() {
         let pens = parse("cmyk");
-        let separation = Separation::new(&pens, WHITE, 0.8, 0.5);
+        let separation = Separation::new(&pens, WHITE, 0.8, Shadows::Clip, 0.5);
         for i in 0..500 {
             let light = [0, 1, 2].map(|c| noise(3 * i + c) as f32);
             let total: f32 = separation.amounts(light).iter().sum();
@@ -288,7 +310,8 @@ mod tests {
     #[test]
     fn gray_is_black_where_asked_for_and_colors_where_not() {
         let pens = parse("cmyk");
-        let black = |gray| Separation::new(&pens, WHITE, 1.0, gray).amounts([0.7; 3])[3];
+        let black =
+            |gray| Separation::new(&pens, WHITE, 1.0, Shadows::Clip, gray).amounts([0.7; 3])[3];
         assert!(black(1.0) > black(0.0) + 0.05, "{} {}", black(1.0), black(0.0));
     }
 }

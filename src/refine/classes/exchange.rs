@@ -20,6 +20,9 @@ use crate::simd::Simd;
 
 /// Reach of a class's dots, in its spacings.
 const REACH: f32 = 2.0;
+/// No farther than this, in spacings of all dots: one of a rare class would be felt by all there are. Beyond,
+/// rare dots stay as even as they were assigned.
+const FARTHEST: f32 = 16.0;
 /// How far away a dot to exchange with may be, in spacings of all dots.
 const NEAR: f32 = 2.0;
 /// Gains below this are rounding.
@@ -43,6 +46,12 @@ fn weight(squared: f32) -> f32 {
     (near * near) * (near * near)
 }
 
+/// The reach of which this is the square's inverse, with its sign.
+#[inline(always)]
+fn reach_of(inverse: f32) -> f32 {
+    1.0 / inverse.abs().sqrt()
+}
+
 impl Exchange {
     pub(super) fn new(dots: usize, classes: usize) -> Result<Self, RefineError> {
         let numbers = dots.saturating_mul(classes);
@@ -60,15 +69,18 @@ impl Exchange {
         for_parts(&mut self.inverse, PART * count, |start, inverse| {
             for (at, inverse) in inverse.chunks_mut(count).enumerate() {
                 let dot = &all.dots[start / count + at];
+                let farthest = FARTHEST * all.density.spacing(dot.x, dot.y);
                 for (inverse, class) in inverse.iter_mut().zip(classes) {
                     *inverse = class.as_ref().map_or(-1.0, |class| {
                         let reach = REACH * class.density.spacing(dot.x, dot.y);
+                        let reach = if reach < farthest { reach } else { farthest };
                         let sign = if class.ink.holds(dot.x, dot.y) { 1.0 } else { -1.0 };
                         sign / (reach * reach)
                     });
                 }
             }
         });
+        let inverse = self.inverse.as_slice();
         for_parts(&mut self.under, PART * count, |start, under| {
             Simd::detect().run(
                 #[inline(always)]
@@ -76,9 +88,10 @@ impl Exchange {
                     for (at, under) in under.chunks_mut(count).enumerate() {
                         let dot = &all.dots[start / count + at];
                         let own = usize::from(class_of[dot.index as usize]);
+                        let inverses = &inverse[start + at * count..][..count];
                         for (number, (under, class)) in under.iter_mut().zip(classes).enumerate() {
                             let Some(class) = class else { continue };
-                            let reach = REACH * class.density.spacing(dot.x, dot.y);
+                            let reach = reach_of(inverses[number]);
                             let itself = if number == own { 1.0 } else { 0.0 };
                             *under = repelled(&class.cells, dot.x, dot.y, reach)
                                 - itself
@@ -92,12 +105,7 @@ impl Exchange {
 
     /// Every dot exchanges with the neighbor with which that gains most, if any. Returns how many did. One
     /// thread, in the dots' order: each sees what the ones before it did.
-    pub(super) fn round(
-        &mut self,
-        all: &Work<'_>,
-        classes: &[Option<Class<'_>>],
-        class_of: &mut [u8],
-    ) -> usize {
+    pub(super) fn round(&mut self, all: &Work<'_>, class_of: &mut [u8]) -> usize {
         let mut exchanges = 0;
         for i in 0..all.dots.len() {
             let one = &all.dots[i];
@@ -127,8 +135,8 @@ impl Exchange {
             let b = usize::from(class_of[other.index as usize]);
             class_of[one.index as usize] = b as u8;
             class_of[other.index as usize] = a as u8;
-            self.moved(all, classes, a, i, j);
-            self.moved(all, classes, b, j, i);
+            self.moved(all, a, i, j);
+            self.moved(all, b, j, i);
             exchanges += 1;
         }
         exchanges
@@ -149,19 +157,11 @@ impl Exchange {
     }
 
     /// A dot of this class is now at dot `to`, and no longer at dot `from`.
-    fn moved(
-        &mut self,
-        all: &Work<'_>,
-        classes: &[Option<Class<'_>>],
-        class: usize,
-        from: usize,
-        to: usize,
-    ) {
-        let Some(Some(field)) = classes.get(class) else { return };
+    fn moved(&mut self, all: &Work<'_>, class: usize, from: usize, to: usize) {
         for (place, sign) in [(from, -1.0_f32), (to, 1.0)] {
             let dot = &all.dots[place];
             // those somewhat farther may reach it where theirs is larger
-            let reach = 1.25 * REACH * field.density.spacing(dot.x, dot.y);
+            let reach = 1.25 * reach_of(self.inverse[place * self.classes + class]);
             for run in all.cells.runs(dot.x, dot.y, reach) {
                 for m in run {
                     let other = &all.dots[m];
@@ -200,7 +200,7 @@ fn repelled(cells: &Cells, x: f32, y: f32, reach: f32) -> f32 {
 }
 
 /// Cells that the density is summed over, on each side of a dot: of means of them, where it reaches farther.
-const RADIUS: f32 = 8.0;
+const RADIUS: f32 = 5.0;
 
 /// A class's density, and sums of 2 × 2 of its cells, of 4 × 4, … Beyond the picture's borders it is nothing,
 /// as there are no dots.

@@ -239,7 +239,7 @@ impl ClassWork<'_> {
     fn exchange(&mut self, rounds: usize) {
         self.exchange.prepare(&self.all, &self.classes, &self.class_of);
         for _ in 0..rounds {
-            if self.exchange.round(&self.all, &self.classes, &mut self.class_of) == 0 {
+            if self.exchange.round(&self.all, &mut self.class_of) == 0 {
                 break;
             }
         }
