@@ -23,7 +23,7 @@ use crate::page::sheet::STEPS;
 use crate::pens::{Inks, InksError, Pens};
 use crate::stipple::dots::{self, Count, DotsError};
 use crate::stipple::gain;
-use crate::stipple::plan::{PEN_SHARE, Plan, streams_unasked};
+use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
@@ -108,12 +108,12 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
         colors.level(levels);
     }
     let gray = options.paper.gcr.unwrap_or(1.0);
-    let inks = Inks::new(&colors, pens, paper, PEN_SHARE, options.paper.shadows, gray).map_err(
-        |error| match error {
-            InksError::Memory { .. } => Failure::about("--pens", error),
-            InksError::Classes(_) => of_photo(options, error),
-        },
-    )?;
+    let inks =
+        Inks::new(&colors, pens, paper, [PENS_SHARE, PEN_SHARE], options.paper.shadows, gray)
+            .map_err(|error| match error {
+                InksError::Memory { .. } => Failure::about("--pens", error),
+                InksError::Classes(_) => of_photo(options, error),
+            })?;
     let mut importance = Vec::new();
     let total = inks.classes.total();
     importance.try_reserve_exact(total.len()).map_err(|_| {

@@ -48,7 +48,7 @@ pub(crate) struct PaperOptions {
     #[arg(long, value_name = "PENS", conflicts_with_all = ["line", "invert", "linear", "dot_gain"])]
     pub(crate) pens: Option<Pens>,
 
-    /// What becomes of colors darker than `--pens` can make with 0.8 of the area covered: `clip` draws them as
+    /// What becomes of colors darker than `--pens` can make with 0.75 of the area covered: `clip` draws them as
     /// dark as can be, and all others as they are; `keep` draws everything lighter, so that differences in
     /// the shadows stay.
     #[arg(long, value_enum, value_name = "HOW", requires = "pens", default_value = "clip")]

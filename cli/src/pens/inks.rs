@@ -15,7 +15,7 @@ const MEMORY_LIMIT: usize = 1 << 30;
 #[derive(Debug)]
 pub(crate) struct Inks {
     pub(crate) pens: Vec<Pen>,
-    /// One class a pen. 1 is as densely as dots lie.
+    /// One class a pen.
     pub(crate) classes: Classes,
 }
 
@@ -48,8 +48,8 @@ impl fmt::Display for InksError {
 impl std::error::Error for InksError {}
 
 impl Inks {
-    /// Divides a picture. `most` is the share of an area that all dots together cover where they lie as densely
-    /// as can be; for the rest see [`Separation::new`].
+    /// Divides a picture. `most` is the share of an area that all dots together may cover, and `full` the one
+    /// that counts as 1; for the rest see [`Separation::new`].
     ///
     /// # Errors
     /// [`InksError`].
@@ -57,7 +57,7 @@ impl Inks {
         picture: &ColorPicture,
         pens: Vec<Pen>,
         paper: Color,
-        most: f64,
+        [most, full]: [f64; 2],
         shadows: Shadows,
         gray: f64,
     ) -> Result<Self, InksError> {
@@ -76,7 +76,7 @@ impl Inks {
         }
         // Neighbors are often alike.
         let mut last = ([f32::NAN; 3], separation.amounts([0.0; 3]));
-        let scale = (1.0 / most) as f32;
+        let scale = (1.0 / full) as f32;
         for &[red, green, blue, covered] in &picture.pixels {
             let light = [red, green, blue];
             if light != last.0 {

@@ -20,6 +20,11 @@ use crate::page::sheet::{DotWidth, NoRoom, Page, Sheet};
 /// at 0.8 even ones lie 1.065 of their width apart.
 pub(crate) const PEN_SHARE: f64 = 0.8;
 
+/// The same of several pens, whose dots lie 1.1 of their width apart where they are densest. Colors leave much
+/// more of a picture as dark as can be than one pen's tone does, and those of each pen are to stay even when
+/// all are kept apart: at 0.8 that takes some hundred rounds.
+pub(crate) const PENS_SHARE: f64 = 0.75;
+
 /// The length of a line through n even dots in an area of 1, over √n: measured on 2,000 and on 8,000 refined
 /// dots of one density. (If each stroke were as long as the distance in a triangular grid, 1.07.)
 const LINE_LENGTH: f64 = 1.02;
