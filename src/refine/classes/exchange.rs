@@ -18,8 +18,9 @@ use super::super::threads::{PART, for_parts};
 use super::Class;
 use crate::simd::Simd;
 
-/// Reach of a class's dots, in its spacings.
-const REACH: f32 = 2.0;
+/// Reach of a class's dots, in its spacings. Of four equal classes of 6,000 dots, mean nearest distance and power
+/// at low frequency of each: .82 and .04 at 1.5, .69 and .03 at 2, .59 and .17 at 3.
+const REACH: f32 = 1.5;
 /// No farther than this, in spacings of all dots: one of a rare class would be felt by all there are. Beyond,
 /// rare dots stay as even as they were assigned.
 const FARTHEST: f32 = 16.0;

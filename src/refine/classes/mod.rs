@@ -26,7 +26,9 @@ use crate::position::Position;
 use crate::simd::Simd;
 use exchange::{Exchange, Pyramid};
 
-/// Weight of the force of a dot's own class beside that of all dots, both in spacings of their own.
+/// Weight of the force of a dot's own class beside that of all dots, both in spacings of their own. Of four equal
+/// classes of 6,000 dots, mean nearest distance of all and of each: .920 and .81 at .15, .912 and .82 at .3,
+/// .896 and .83 at .6, .876 and .85 at 1.
 const CLASS_FORCE: f32 = 0.3;
 /// Rounds of exchanges before the first move.
 const FIRST_EXCHANGES: usize = 6;
