@@ -116,9 +116,9 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
             })?;
     let mut importance = Vec::new();
     let total = inks.classes.total();
-    importance.try_reserve_exact(total.len()).map_err(|_| {
-        of_photo(options, InksError::Memory { bytes: Some(total.len() * size_of::<f32>()) })
-    })?;
+    importance
+        .try_reserve_exact(total.len())
+        .map_err(|_| of_photo(options, InksError::Memory { bytes: Some(size_of_val(total)) }))?;
     importance.extend_from_slice(total);
     let (width, height) = (colors.width, colors.height);
     let picture = Picture { width, height, importance, range: None, warnings: colors.warnings };

@@ -5,7 +5,7 @@
 //! amounts that come nearest to the wanted light, none negative and all together no more than fits,
 //! are a small quadratic problem with one optimum for each color:
 //!
-//! minimise |Σ a_k d_k − (light − paper)|² + Σ c_k a_k,  a ≥ 0, Σ a ≤ 1,  d_k = ink_k − paper.
+//! minimise |Σ a_k d_k − (light − paper)|² + Σ c_k a_k,  a ≥ 0, Σ a ≤ most,  d_k = ink_k − paper.
 //!
 //! Discs that do not overlap cover less than all of an area. Amounts that do not fit are scaled down together,
 //! which mixes the color with that of the paper: its hue stays.
@@ -72,14 +72,19 @@ impl Separation {
         let darkest = (0..inks.len()).min_by(|&i, &k| sum(&inks[i]).total_cmp(&sum(&inks[k])));
         // Per share of area: equal at gray = 1, where the pen that does the most with the least area
         // wins, which is the darkest; dear at gray = 0. Bare paper is free.
-        let dear = |k| if Some(k) == darkest { 1.0 + 8.0 * (1.0 - gray) } else { 1.0 };
-        let costs = (0..inks.len()).map(|k| INK_COST * dear(k)).chain([0.0]).collect();
+        let costs = |gray: f64| -> Vec<f64> {
+            let dear = |k| if Some(k) == darkest { 1.0 + 8.0 * (1.0 - gray) } else { 1.0 };
+            (0..inks.len()).map(|k| INK_COST * dear(k)).chain([0.0]).collect()
+        };
         let columns = inks
             .iter()
             .chain([&[0.0; 3]])
             .map(|ink| [ink[0], ink[1], ink[2], SUM_WEIGHT])
             .collect();
-        let problem = Problem { columns, costs };
+        let least = Problem { columns, costs: costs(1.0), most: 1.0 };
+        let (columns, costs) = (least.columns.clone(), costs(gray));
+        let most_here = if shadows == Shadows::Keep { 1.0 } else { most };
+        let asked = Problem { columns, costs, most: most_here };
         let value = |i: usize| {
             let root = i as f64 / (SIDE - 1) as f64;
             root * root
@@ -87,15 +92,22 @@ impl Separation {
         let nodes = (0..SIDE * SIDE * SIDE)
             .map(|i| {
                 let light = [value(i / (SIDE * SIDE)), value(i / SIDE % SIDE), value(i % SIDE)];
-                let mut amounts = problem.solve([0, 1, 2].map(|c| light[c] - paper[c]));
+                let change = [0, 1, 2].map(|c| light[c] - paper[c]);
+                let scaled = |amounts: Amounts, scale: f64| amounts.map(|a| a * scale as f32);
+                if shadows == Shadows::Keep {
+                    return scaled(asked.solve(change), most);
+                }
+                // The least area that makes this color. If it fits, so does what was asked for; if it does
+                // not quite, nothing else would.
+                let amounts = least.solve(change);
                 let sum: f64 = amounts.iter().map(|amount| f64::from(*amount)).sum();
-                let scale = match shadows {
-                    Shadows::Keep => most,
-                    Shadows::Clip if sum > most => most / sum,
-                    Shadows::Clip => 1.0,
-                };
-                amounts.iter_mut().for_each(|amount| *amount *= scale as f32);
-                amounts
+                if sum > most {
+                    scaled(amounts, most / sum)
+                } else if gray < 1.0 {
+                    asked.solve(change)
+                } else {
+                    amounts
+                }
             })
             .collect();
         Self { nodes }
@@ -133,19 +145,20 @@ impl Separation {
 }
 
 /// The quadratic problem of one set of pens, bare paper among them: as many unknowns as pens and one, whose
-/// sum is 1.
+/// sum is `most`.
 struct Problem {
     /// Light taken away (or added) by a full cover of each ink, the paper's 0 last; and the weight of the
     /// sum.
     columns: Vec<[f64; 4]>,
     costs: Vec<f64>,
+    most: f64,
 }
 
 impl Problem {
     /// The amounts nearest to the change of light `wanted`: the active-set method of Lawson and Hanson
     /// (1974), with a linear cost.
     fn solve(&self, wanted: [f64; 3]) -> Amounts {
-        let goal = [wanted[0], wanted[1], wanted[2], SUM_WEIGHT];
+        let goal = [wanted[0], wanted[1], wanted[2], SUM_WEIGHT * self.most];
         let count = self.columns.len();
         let mut amounts = vec![0.0; count];
         let mut used: Vec<usize> = Vec::new();
@@ -185,7 +198,7 @@ impl Problem {
         }
         // The weight leaves the sum a little off.
         let total: f64 = amounts[..count - 1].iter().sum();
-        let shrink = if total > 1.0 { 1.0 / total } else { 1.0 };
+        let shrink = if total > self.most { self.most / total } else { 1.0 };
         let mut found = [0.0; MAX_PENS];
         for (to, from) in found.iter_mut().zip(&amounts[..count - 1]) {
             *to = (shrink * from) as f32;
@@ -205,8 +218,8 @@ impl Problem {
                 left.chain([right]).collect()
             })
             .collect();
-        for i in 0..n {
-            rows[i][i] += 1e-9;
+        for (i, row) in rows.iter_mut().enumerate() {
+            row[i] += 1e-9;
         }
         // Symmetric and positive: no pivoting.
         for i in 0..n {
@@ -305,6 +318,20 @@ mod tests {
         assert_eq!(separation.amounts([1.0; 3]), [0.0; MAX_PENS]);
         let [_, _, _, black, ..] = separation.amounts([0.0; 3]);
         assert!(black > 0.75);
+    }
+
+    #[test]
+    fn gray_of_colored_inks_leaves_room_for_what_fits() {
+        let pens = parse("cmyk");
+        for gray in [0.0, 0.5, 1.0] {
+            let separation = Separation::new(&pens, WHITE, 0.75, Shadows::Clip, gray);
+            for light in [[0.3; 3], [0.5; 3], [0.9, 0.5, 0.4], [0.5, 0.55, 0.5]] {
+                let again = mixed(&pens, &separation.amounts(light.map(|c| c as f32)));
+                for c in 0..3 {
+                    assert!((again[c] - light[c]).abs() < 0.015, "{gray} {light:?} {again:?}");
+                }
+            }
+        }
     }
 
     #[test]
