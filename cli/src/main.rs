@@ -6,6 +6,7 @@ mod command;
 mod drawing;
 mod order;
 mod page;
+mod pens;
 mod stipple;
 
 use std::io::Write as _;

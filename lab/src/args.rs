@@ -31,6 +31,11 @@ pub(crate) enum Command {
     ///
     /// Power at low frequency (white noise = 1), mean and least nearest distance (hexagonal lattice = 1).
     Evenness(EvennessOptions),
+    /// Measure how even dots of several classes are, all together and those of each class: bands of rank, a
+    /// random split, classes exchanged between neighbors, and refined.
+    ///
+    /// The columns are those of evenness, of dots on even ground.
+    Classes(ClassesOptions),
 }
 
 /// Options of `twelvefold-lab report`.
@@ -79,6 +84,18 @@ pub(crate) struct EvennessOptions {
     /// Points a set; the time is O(n²).
     #[arg(long, value_name = "N", default_value_t = 16_384, value_parser = clap::value_parser!(u32).range(64..=1 << 20))]
     pub(crate) points: u32,
+}
+
+/// Options of `twelvefold-lab classes`.
+#[derive(Debug, Args)]
+pub(crate) struct ClassesOptions {
+    /// Dots of all classes together, about; the time is O(n²).
+    #[arg(long, value_name = "N", default_value_t = 8000, value_parser = clap::value_parser!(u32).range(2000..=1 << 18))]
+    pub(crate) points: u32,
+
+    /// Iterations with both energies.
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
+    pub(crate) iterations: u16,
 }
 
 /// Options of `twelvefold-lab train`.

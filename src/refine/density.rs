@@ -156,6 +156,12 @@ impl Density {
         })
     }
 
+    /// Columns and rows of `mass` that lie in the picture.
+    pub(super) fn inside(&self) -> (usize, usize) {
+        let rows = self.mass.len() / self.stride.max(1);
+        (self.stride - 2 * self.margin[0], rows - 2 * self.margin[1])
+    }
+
     /// Spacing at a place inside of the picture.
     #[inline(always)]
     pub(super) fn spacing(&self, x: f32, y: f32) -> f32 {

@@ -38,6 +38,11 @@ pub enum RefineError {
         /// Length of the buffer.
         found: usize,
     },
+    /// There is no class, or there are more than [`Classes::MOST`](super::Classes::MOST).
+    Classes {
+        /// How many.
+        count: usize,
+    },
     /// There is not enough memory.
     Memory {
         /// How many bytes were asked for, beyond what was held already.
@@ -58,6 +63,13 @@ impl fmt::Display for RefineError {
             Self::Point { index } => write!(f, "point {index} is not finite"),
             Self::Length { expected, found } => {
                 write!(f, "a buffer of {found} for {expected} dots")
+            }
+            Self::Classes { count } => {
+                write!(
+                    f,
+                    "{count} classes of dots; from 1 to {} are possible",
+                    super::Classes::MOST
+                )
             }
             Self::Memory { bytes } => write!(f, "refining needs {bytes} bytes more than there are"),
         }

@@ -34,10 +34,11 @@
 //! # Stages
 //!
 //! `ink`: where dots may be. `density`: dots a pixel and spacing. `start` and `spread`: dots as they came, made fit.
-//! `cells`: who is near. `force`, then `coarse` and `conjugate`: the two moves. `polish`, with `power` and `share`: the
-//! one move that [`Refiner::polish`] adds. `threads`: who does which.
+//! `cells`: who is near. `force`, then `coarse` and `conjugate`: the two moves. `classes`: dots of several kinds.
+//! `polish`, with `power` and `share`: the one move that [`Refiner::polish`] adds. `threads`: who does which.
 
 mod cells;
+mod classes;
 mod coarse;
 mod conjugate;
 mod density;
@@ -59,6 +60,7 @@ use crate::position::{Position, Scalar};
 use crate::simd::Simd;
 
 use cells::{Cells, Dot};
+pub use classes::{ClassRefiner, Classes};
 use coarse::Coarse;
 use density::Density;
 pub use error::RefineError;
@@ -169,16 +171,20 @@ impl<'a> Refiner<'a> {
     /// # Errors
     /// If `points` is not as long as the points that the dots were.
     pub fn write<P: Position>(&self, points: &mut [P]) -> Result<(), RefineError> {
-        let dots = self.work.as_ref().map_or(&[][..], |work| &work.dots);
-        if dots.len() != points.len() {
-            return Err(RefineError::Length { expected: dots.len(), found: points.len() });
-        }
-        for dot in dots {
-            let coordinate = |value: f32| P::Scalar::from_f64(f64::from(value));
-            points[dot.index as usize] = P::from_xy(coordinate(dot.x), coordinate(dot.y));
-        }
-        Ok(())
+        write(self.work.as_ref().map_or(&[][..], |work| &work.dots), points)
     }
+}
+
+/// Writes each dot to the place of the point that it was.
+fn write<P: Position>(dots: &[Dot], points: &mut [P]) -> Result<(), RefineError> {
+    if dots.len() != points.len() {
+        return Err(RefineError::Length { expected: dots.len(), found: points.len() });
+    }
+    for dot in dots {
+        let coordinate = |value: f32| P::Scalar::from_f64(f64::from(value));
+        points[dot.index as usize] = P::from_xy(coordinate(dot.x), coordinate(dot.y));
+    }
+    Ok(())
 }
 
 impl Work<'_> {

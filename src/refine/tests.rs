@@ -19,7 +19,7 @@ use super::share::{Other, Share};
 use super::{RefineError, Refiner, best, refine};
 
 /// Places that look random: halves of a 64-bit mix of the index.
-fn scattered(n: usize, width: f64, height: f64) -> Vec<DVec2> {
+pub(super) fn scattered(n: usize, width: f64, height: f64) -> Vec<DVec2> {
     let mix = |i: u64| {
         let z = (i ^ (i >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -17,24 +17,35 @@ use crate::args::{DotGain, StippleOptions};
 use crate::drawing::{Drawing, DrawingError, Format, Layer};
 use crate::order;
 use crate::page::apart::keep_apart;
+use crate::page::color::Color;
 use crate::page::options::Order;
 use crate::page::sheet::STEPS;
+use crate::pens::{Inks, InksError, Pens};
 use crate::stipple::dots::{self, Count, DotsError};
 use crate::stipple::gain;
-use crate::stipple::plan::{Plan, streams_unasked};
+use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let (format, mut output) = open(options)?;
-    let mut picture = read(options)?;
-    prepare(&mut picture, options, format);
+    let (picture, inks) = match &options.paper.pens {
+        None => {
+            let mut picture = read(options)?;
+            prepare(&mut picture, options, format);
+            (picture, None)
+        }
+        Some(pens) => {
+            let (picture, inks) = read_color(options, pens)?;
+            (picture, Some(inks))
+        }
+    };
     let plan = Plan::new(options, &picture, format)
         .map_err(|error| Failure::about(error.option(), error))?;
     let mut progress = Progress::new(plan.wish.count.number(), options.quiet);
-    let drawn = draw(format, picture, &plan, &mut output, &mut progress);
+    let drawn = draw(format, (picture, inks), &plan, &mut output, &mut progress);
     let (points, time) = progress.finish();
-    let travel = match drawn {
-        Ok(travel) => travel,
+    let drawn = match drawn {
+        Ok(drawn) => drawn,
         Err(DotsError::Taker(DrawError::Drawing(DrawingError::Io(error)))) => {
             return finish(options, Err(OutputError::Io(error)));
         }
@@ -52,7 +63,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
             io::stderr(),
             "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second{}",
             points as f64 / seconds.max(1e-9),
-            remarks(options, &plan, points, travel),
+            remarks(options, &plan, points, &drawn),
         );
     }
     Ok(())
@@ -76,18 +87,54 @@ fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
 fn read(options: &StippleOptions) -> Result<Picture, Failure> {
     let picture = picture::read_layer(&options.photo, tone(options)?, options.layer.as_deref())
         .map_err(|error| of_photo(options, error))?;
-    if !options.quiet {
-        for warning in &picture.warnings {
-            let warning = of_photo(options, format!("warning: {warning}"));
-            let _ = writeln!(io::stderr(), "twelvefold: {warning}");
-        }
-    }
+    warn(options, &picture.warnings);
     let nothing = options.points == Some(0) || options.exact == Some(0);
     if picture.total() == 0.0 && !nothing {
         let blank = Blank { invert: options.invert, range: picture.range };
         return Err(of_photo(options, blank));
     }
     Ok(picture)
+}
+
+/// Reads the photograph's colors and divides them among pens; what all pens together draw is the picture.
+fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), Failure> {
+    let paper = options.paper.paper.unwrap_or(Color::WHITE);
+    let pens = pens.on(paper).map_err(|error| Failure::about("--pens", error))?;
+    let tone = tone(options)?;
+    let mut colors = picture::read_color(&options.photo, tone, options.layer.as_deref())
+        .map_err(|error| of_photo(options, error))?;
+    warn(options, &colors.warnings);
+    if let Some(levels) = tone.levels {
+        colors.level(levels);
+    }
+    let gray = options.paper.gcr.unwrap_or(1.0);
+    let inks =
+        Inks::new(&colors, pens, paper, [PENS_SHARE, PEN_SHARE], options.paper.shadows, gray)
+            .map_err(|error| match error {
+                InksError::Memory { .. } => Failure::about("--pens", error),
+                InksError::Classes(_) => of_photo(options, error),
+            })?;
+    let mut importance = Vec::new();
+    let total = inks.classes.total();
+    importance
+        .try_reserve_exact(total.len())
+        .map_err(|_| of_photo(options, InksError::Memory { bytes: Some(size_of_val(total)) }))?;
+    importance.extend_from_slice(total);
+    let (width, height) = (colors.width, colors.height);
+    let picture = Picture { width, height, importance, range: None, warnings: colors.warnings };
+    let nothing = options.points == Some(0) || options.exact == Some(0);
+    if picture.total() == 0.0 && !nothing {
+        let reason = "has no color that these pens could bring nearer than bare paper";
+        return Err(of_photo(options, reason));
+    }
+    Ok((picture, inks))
+}
+
+fn warn(options: &StippleOptions, warnings: &[String]) {
+    for warning in warnings.iter().filter(|_| !options.quiet) {
+        let warning = of_photo(options, format!("warning: {warning}"));
+        let _ = writeln!(io::stderr(), "twelvefold: {warning}");
+    }
 }
 
 /// The tone that the options ask for.
@@ -123,28 +170,51 @@ fn prepare(picture: &mut Picture, options: &StippleOptions, format: Format) {
     }
 }
 
-/// Draws a picture's dots; returns how far a pen travels between them, where they were put in order for it.
+/// What there is to say about what was drawn.
+#[derive(Debug, Default)]
+struct Drawn {
+    /// How far a pen travels between dots, where they were put in order for it.
+    travel: Option<f64>,
+    /// Dots of each of several pens.
+    pens: Vec<(String, usize)>,
+}
+
+/// Draws a picture's dots, those of each pen in its layer.
 fn draw(
     format: Format,
-    picture: Picture,
+    (picture, inks): (Picture, Option<Inks>),
     plan: &Plan,
     output: &mut Output,
     progress: &mut Progress,
-) -> Result<Option<f64>, DotsError<DrawError>> {
+) -> Result<Drawn, DotsError<DrawError>> {
     let failed = |error: io::Error| DotsError::Taker(DrawError::Drawing(error.into()));
     let mut drawing = format
         .begin(output, &plan.look)
         .map_err(|error| DotsError::Taker(DrawError::Drawing(error)))?;
-    drawing.layer(&layer(plan)).map_err(failed)?;
-    let mut travel = None;
-    if plan.needs_list() {
-        let placed = dots::list(picture, plan.wish, || {})?;
-        let dots = arranged(placed, plan).map_err(DotsError::Taker)?;
-        travel = Some(dots.windows(2).map(|pair| pair[0].distance(pair[1])).sum());
-        dots.into_iter()
-            .try_for_each(|dot| put(&mut *drawing, dot, progress))
-            .map_err(DotsError::Taker)?;
+    let mut drawn = Drawn::default();
+    if inks.is_some() || plan.needs_list() {
+        let mut dots = dots::list(picture, plan.wish, || {})?;
+        let class_of = match &inks {
+            Some(inks) => dots::classified(&inks.classes, &mut dots, plan.wish.refine)
+                .map_err(DotsError::Refine)?,
+            None => Vec::new(),
+        };
+        let layers = layers(inks, dots, class_of, plan).map_err(DotsError::Taker)?;
+        for (layer, dots) in layers {
+            drawing.layer(&layer).map_err(failed)?;
+            let length: f64 = dots.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            if plan.line || plan.order == Order::Short {
+                drawn.travel = Some(drawn.travel.unwrap_or(0.0) + length);
+            }
+            if plan.look.named {
+                drawn.pens.push((layer.name, dots.len()));
+            }
+            dots.into_iter()
+                .try_for_each(|dot| put(&mut *drawing, dot, progress))
+                .map_err(DotsError::Taker)?;
+        }
     } else {
+        drawing.layer(&layer(plan)).map_err(failed)?;
         let sheet = &plan.look.sheet;
         dots::place(
             picture,
@@ -154,11 +224,50 @@ fn draw(
         )?;
     }
     drawing.finish().map_err(failed)?;
-    Ok(travel)
+    Ok(drawn)
 }
 
 fn layer(plan: &Plan) -> Layer {
     Layer { name: plan.ink.svg(), color: plan.ink }
+}
+
+/// Dots as pens draw them: on the sheet, all apart, those of each pen in order.
+fn layers(
+    inks: Option<Inks>,
+    mut dots: Vec<DVec2>,
+    mut class_of: Vec<u8>,
+    plan: &Plan,
+) -> Result<Vec<(Layer, Vec<DVec2>)>, DrawError> {
+    let sheet = &plan.look.sheet;
+    for dot in &mut dots {
+        *dot = sheet.place(*dot);
+    }
+    if let Some(least) = plan.apart {
+        let asked = dots.len();
+        let kept = keep_apart(&mut dots, least, sheet);
+        if let (Count::Exactly(_), true) = (plan.wish.count, dots.len() < asked) {
+            return Err(DrawError::NotExact { asked, found: dots.len() });
+        }
+        let mut kept = kept.into_iter();
+        class_of.retain(|_| kept.next().unwrap_or(true));
+    }
+    let Some(inks) = inks else {
+        return Ok(vec![(layer(plan), arranged(dots, plan))]);
+    };
+    let mut layers: Vec<(Layer, Vec<DVec2>)> = inks
+        .pens
+        .into_iter()
+        .map(|pen| (Layer { name: pen.name, color: pen.color }, Vec::new()))
+        .collect();
+    for (dot, class) in dots.into_iter().zip(class_of) {
+        if let Some((_, dots)) = layers.get_mut(usize::from(class)) {
+            dots.push(dot);
+        }
+    }
+    for (_, dots) in &mut layers {
+        *dots = arranged(std::mem::take(dots), plan);
+    }
+    Ok(layers)
 }
 
 fn put(drawing: &mut dyn Drawing, dot: DVec2, progress: &mut Progress) -> Result<(), DrawError> {
@@ -166,19 +275,9 @@ fn put(drawing: &mut dyn Drawing, dot: DVec2, progress: &mut Progress) -> Result
     drawing.dot(dot).map_err(|error| DrawError::Drawing(error.into()))
 }
 
-/// Dots of a photograph as a pen draws them: on the sheet, apart, in order.
-fn arranged(mut dots: Vec<DVec2>, plan: &Plan) -> Result<Vec<DVec2>, DrawError> {
+/// Dots in the order in which a pen draws them.
+fn arranged(mut dots: Vec<DVec2>, plan: &Plan) -> Vec<DVec2> {
     let sheet = &plan.look.sheet;
-    for dot in &mut dots {
-        *dot = sheet.place(*dot);
-    }
-    if let Some(least) = plan.apart {
-        let asked = dots.len();
-        keep_apart(&mut dots, least, sheet);
-        if let (Count::Exactly(_), true) = (plan.wish.count, dots.len() < asked) {
-            return Err(DrawError::NotExact { asked, found: dots.len() });
-        }
-    }
     if plan.line {
         // Thousandths that lie in the half-open picture.
         let most = sheet.picture()[1] - 1.0 / STEPS;
@@ -189,11 +288,11 @@ fn arranged(mut dots: Vec<DVec2>, plan: &Plan) -> Result<Vec<DVec2>, DrawError> 
     } else if plan.order == Order::Short {
         order::short(&mut dots);
     }
-    Ok(dots)
+    dots
 }
 
 /// What there is to say about a drawing besides its number of dots.
-fn remarks(options: &StippleOptions, plan: &Plan, points: u64, travel: Option<f64>) -> String {
+fn remarks(options: &StippleOptions, plan: &Plan, points: u64, drawn: &Drawn) -> String {
     let mut remarks = String::new();
     if streams_unasked(options, &plan.wish) {
         remarks += ", not refined since so many are drawn as they come (see --refine)";
@@ -206,7 +305,10 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, travel: Option<f6
     if let (Some(pen), None, None) = (options.paper.pen, options.points, options.exact) {
         remarks += &format!(", which a {} mm pen fills", pen.millimeters());
     }
-    if let Some(travel) = travel.filter(|_| options.paper.page.is_some() && points > 1) {
+    for (pen, dots) in &drawn.pens {
+        remarks += &format!(", {dots} {pen}");
+    }
+    if let Some(travel) = drawn.travel.filter(|_| options.paper.page.is_some() && points > 1) {
         let what = if plan.line { "a line of" } else { "travel" };
         remarks += &format!(", {what} {:.1} m", travel / 1e3);
     }

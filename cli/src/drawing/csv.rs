@@ -6,10 +6,13 @@ use glam::DVec2;
 
 use super::{Drawing, Layer};
 
-/// Lines `x,y` after a header that says so. Coordinates are the shortest decimals that read back as
+/// Lines `x,y`, or `x,y,pen`, after a header that says so. A pen's name is that of its layer. Coordinates are the shortest decimals that read back as
 /// the same 32-bit floats.
 pub(crate) struct Csv<W: Write> {
     out: BufWriter<W>,
+    /// What comes after the coordinates.
+    end: String,
+    named: bool,
     x: zmij::Buffer,
     y: zmij::Buffer,
 }
@@ -19,22 +22,31 @@ impl<W: Write> Csv<W> {
     ///
     /// # Errors
     /// The system's.
-    pub(crate) fn new(out: W) -> io::Result<Self> {
+    pub(crate) fn new(out: W, named: bool) -> io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
-        out.write_all(b"x,y\n")?;
-        Ok(Self { out, x: zmij::Buffer::new(), y: zmij::Buffer::new() })
+        out.write_all(if named { b"x,y,pen\n" } else { b"x,y\n" })?;
+        Ok(Self {
+            out,
+            end: "\n".to_owned(),
+            named,
+            x: zmij::Buffer::new(),
+            y: zmij::Buffer::new(),
+        })
     }
 }
 
 impl<W: Write> Drawing for Csv<W> {
-    fn layer(&mut self, _: &Layer) -> io::Result<()> {
+    fn layer(&mut self, layer: &Layer) -> io::Result<()> {
+        if self.named {
+            self.end = format!(",{}\n", quoted(&layer.name));
+        }
         Ok(())
     }
 
     fn dot(&mut self, at: DVec2) -> io::Result<()> {
         // Formatted by the standard library, a point would take longer than it takes to place it.
         let (x, y) = (self.x.format(at.x as f32), self.y.format(at.y as f32));
-        for part in [x, ",", y, "\n"] {
+        for part in [x, ",", y, &self.end] {
             self.out.write_all(part.as_bytes())?;
         }
         Ok(())
@@ -42,6 +54,15 @@ impl<W: Write> Drawing for Csv<W> {
 
     fn finish(mut self: Box<Self>) -> io::Result<()> {
         self.out.flush()
+    }
+}
+
+/// A name as a field of a table (RFC 4180).
+fn quoted(name: &str) -> String {
+    if name.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", name.replace('"', "\"\""))
+    } else {
+        name.to_owned()
     }
 }
 
@@ -53,7 +74,7 @@ mod tests {
     fn coordinates_read_back_to_the_bit() {
         let dots = [(0.0f32, 511.99997f32), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
         let mut bytes = Vec::new();
-        let mut csv = Box::new(Csv::new(&mut bytes).unwrap());
+        let mut csv = Box::new(Csv::new(&mut bytes, false).unwrap());
         for (x, y) in dots {
             csv.dot(DVec2::new(f64::from(x), f64::from(y))).unwrap();
         }
@@ -67,5 +88,18 @@ mod tests {
         }
         assert_eq!(lines.next(), None);
         assert!(text.ends_with('\n'));
+    }
+
+    #[test]
+    fn pens_have_a_column() {
+        let mut bytes = Vec::new();
+        let mut csv = Box::new(Csv::new(&mut bytes, true).unwrap());
+        for name in ["teal", "a,\"b\""] {
+            csv.layer(&Layer { name: name.to_owned(), ..Layer::black() }).unwrap();
+            csv.dot(DVec2::new(1.5, 2.0)).unwrap();
+        }
+        csv.finish().unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(text, "x,y,pen\n1.5,2.0,teal\n1.5,2.0,\"a,\"\"b\"\"\"\n");
     }
 }

@@ -47,8 +47,8 @@ impl Format {
             Self::Svg => Box::new(Svg::new(out, look)?),
             Self::Png => Box::new(Png::new(out, look)?),
             Self::Pdf => Box::new(Pdf::new(out, look)?),
-            Self::Csv => Box::new(Csv::new(out)?),
-            Self::Npy => Box::new(Npy::new(out)),
+            Self::Csv => Box::new(Csv::new(out, look.named)?),
+            Self::Npy => Box::new(Npy::new(out, look.named)),
         })
     }
 }

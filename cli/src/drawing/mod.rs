@@ -63,6 +63,8 @@ pub(crate) struct Look {
     pub(crate) ground_drawn: bool,
     /// Averages are to be right in linear light, instead of in encoded values.
     pub(crate) linear: bool,
+    /// Lists say of which layer each dot is.
+    pub(crate) named: bool,
     /// What the drawing shows, in plain text.
     pub(crate) title: String,
     /// How it was made, in plain text.
@@ -124,6 +126,7 @@ impl Look {
             ground: Color::WHITE,
             ground_drawn: true,
             linear: false,
+            named: false,
             title: "t".into(),
             description: "d".into(),
         }

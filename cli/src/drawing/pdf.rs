@@ -36,6 +36,7 @@ pub(crate) struct Pdf<'a, W: Write> {
     /// Dots in the path, and before it.
     dots: u64,
     text: Vec<u8>,
+    layers: Vec<String>,
 }
 
 impl<'a, W: Write> Pdf<'a, W> {
@@ -59,7 +60,16 @@ impl<'a, W: Write> Pdf<'a, W> {
         let step = real(points / steps);
         writeln!(content, "{step} 0 0 -{step} 0 {} cm 1 J 1 j", real(size.y))?;
         writeln!(content, "{} w", real(look.mark.stroke() * steps))?;
-        Ok(Self { out, look, content, steps, size, dots: 0, text: Vec::with_capacity(256) })
+        Ok(Self {
+            out,
+            look,
+            content,
+            steps,
+            size,
+            dots: 0,
+            text: Vec::with_capacity(256),
+            layers: Vec::new(),
+        })
     }
 
     fn paint(&mut self) -> io::Result<()> {
@@ -67,6 +77,13 @@ impl<'a, W: Write> Pdf<'a, W> {
             self.content.write_all(b"S\n")?;
         }
         self.dots = 0;
+        Ok(())
+    }
+
+    fn end_layer(&mut self) -> io::Result<()> {
+        if self.look.named && !self.layers.is_empty() {
+            self.content.write_all(b"EMC\n")?;
+        }
         Ok(())
     }
 
@@ -100,6 +117,11 @@ impl<'a, W: Write> Pdf<'a, W> {
 impl<W: Write> Drawing for Pdf<'_, W> {
     fn layer(&mut self, layer: &Layer) -> io::Result<()> {
         self.paint()?;
+        self.end_layer()?;
+        self.layers.push(layer.name.clone());
+        if self.look.named {
+            writeln!(self.content, "/OC /{} BDC", property(self.layers.len()))?;
+        }
         writeln!(self.content, "{} RG", ink(layer.color))
     }
 
@@ -140,16 +162,39 @@ impl<W: Write> Drawing for Pdf<'_, W> {
 
     fn finish(mut self: Box<Self>) -> io::Result<()> {
         self.paint()?;
+        self.end_layer()?;
         let content = self.content.finish()?;
         let mut pdf = Writer::with_capacity(content.len() + 2048);
         let [catalog, pages, page, strokes, information] = [1, 2, 3, 4, 5].map(Ref::new);
-        pdf.catalog(catalog).pages(pages);
+        // Layers that viewers can hide (ISO 32000-1, 8.11).
+        let named = if self.look.named { self.layers.as_slice() } else { &[] };
+        let groups: Vec<Ref> = (6..).map(Ref::new).take(named.len()).collect();
+        let mut root = pdf.catalog(catalog);
+        root.pages(pages);
+        if !groups.is_empty() {
+            let mut properties = root.insert(Name(b"OCProperties")).dict();
+            properties.insert(Name(b"OCGs")).array().items(&groups);
+            let mut shown = properties.insert(Name(b"D")).dict();
+            shown.insert(Name(b"Order")).array().items(&groups);
+        }
+        root.finish();
+        for (group, name) in groups.iter().zip(named) {
+            let mut group = pdf.indirect(*group).dict();
+            group.pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(name));
+        }
         pdf.pages(pages).kids([page]).count(1);
         let mut sheet = pdf.page(page);
         sheet.media_box(Rect::new(0.0, 0.0, self.size.x as f32, self.size.y as f32));
         sheet.parent(pages);
         sheet.contents(strokes);
-        sheet.resources();
+        let mut resources = sheet.resources();
+        if !groups.is_empty() {
+            let mut properties = resources.insert(Name(b"Properties")).dict();
+            for (group, number) in groups.iter().zip(1..) {
+                properties.pair(Name(property(number).as_bytes()), *group);
+            }
+        }
+        resources.finish();
         sheet.finish();
         pdf.stream(strokes, &content).filter(Filter::FlateDecode);
         let mut about = pdf.document_info(information);
@@ -159,6 +204,11 @@ impl<W: Write> Drawing for Pdf<'_, W> {
         self.out.write_all(&pdf.finish())?;
         self.out.flush()
     }
+}
+
+/// What the page calls a layer.
+fn property(number: usize) -> String {
+    format!("L{number}")
 }
 
 /// A number as PDF has them: without an exponent.

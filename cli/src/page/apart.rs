@@ -14,8 +14,8 @@ const ROUNDS: usize = 400;
 const PUSH: f64 = 0.85;
 
 /// Dots, rounded to the sheet's steps, at least `least` apart: those too near to each other are moved, and the
-/// few that find no room are left out.
-pub(crate) fn keep_apart(dots: &mut Vec<DVec2>, least: f64, sheet: &Sheet) {
+/// few that find no room are left out. Says of each whether it stayed.
+pub(crate) fn keep_apart(dots: &mut Vec<DVec2>, least: f64, sheet: &Sheet) -> Vec<bool> {
     // Rounding may bring two dots nearer by a step and a half.
     let wanted = least + 2.0 / STEPS;
     let [low, high] = sheet.picture();
@@ -51,8 +51,9 @@ pub(crate) fn keep_apart(dots: &mut Vec<DVec2>, least: f64, sheet: &Sheet) {
         });
         kept[i] = stays;
     }
-    let mut kept = kept.into_iter();
-    dots.retain(|_| kept.next().unwrap_or(true));
+    let mut stays = kept.iter();
+    dots.retain(|_| stays.next().copied().unwrap_or(true));
+    kept
 }
 
 /// What the neighbors nearer than `wanted` push dot `i` away.
@@ -98,7 +99,9 @@ mod tests {
             let given: Vec<DVec2> =
                 places.iter().map(|&(x, y)| sheet.place(DVec2::new(x, y))).collect();
             let mut dots = given.clone();
-            keep_apart(&mut dots, least, &sheet);
+            let kept = keep_apart(&mut dots, least, &sheet);
+            prop_assert_eq!(kept.iter().filter(|kept| **kept).count(), dots.len());
+            prop_assert_eq!(kept.len(), given.len());
             let [low, high] = sheet.picture();
             for (i, dot) in dots.iter().enumerate() {
                 prop_assert!(dot.cmpge(low).all() && dot.cmple(high).all());

@@ -5,6 +5,7 @@ use clap::{Args, ValueEnum};
 use super::color::Color;
 use super::length::{Length, PageSize, margin};
 use super::marks::Marks;
+use crate::pens::{Pens, Shadows};
 
 /// Options for paper, pens and printers.
 #[derive(Debug, Args)]
@@ -35,6 +36,28 @@ pub(crate) struct PaperOptions {
     /// are an error. `--exact` draws what fits or fails.
     #[arg(long, value_name = "WIDTH", requires = "page", conflicts_with = "dot_gain")]
     pub(crate) pen: Option<Length>,
+
+    /// Draw in color, with these pens: `cmyk`, or CSS colors such as black,#c33,teal, at most 12.
+    ///
+    /// Seen from afar, dots and paper have the photograph's colors, as far as these pens can make them. No two dots overlap, of whichever pens, and those of each pen are even. The number of
+    /// dots is that of all pens together.
+    ///
+    /// Each pen has a layer of its own, light ones first: in SVG one that Inkscape knows, in PDF one that
+    /// viewers can hide. CSV has a third column, pen, with its name; NPY a third number, the layer's,
+    /// from 0. For dark paper name its color with `--paper`.
+    #[arg(long, value_name = "PENS", conflicts_with_all = ["line", "invert", "linear", "dot_gain"])]
+    pub(crate) pens: Option<Pens>,
+
+    /// What becomes of colors darker than `--pens` can make with 0.75 of the area covered: `clip` draws them as
+    /// dark as can be, and all others as they are; `keep` draws everything lighter, so that differences in
+    /// the shadows stay.
+    #[arg(long, value_enum, value_name = "HOW", requires = "pens", default_value = "clip")]
+    pub(crate) shadows: Shadows,
+
+    /// How far the darkest pen replaces colored ones that together make gray, from 0 to 1 [default: 1, which
+    /// takes the fewest dots; less has fewer dark dots among light ones].
+    #[arg(long, value_name = "SHARE", requires = "pens", value_parser = share)]
+    pub(crate) gcr: Option<f64>,
 
     /// What is drawn for each dot: `disc`, a filled circle, for screens and printers; `tap`, the shortest
     /// stroke, for a pen that goes down and up; `ring`, a circle that the pen draws, and in it as many as
@@ -71,6 +94,14 @@ pub(crate) struct PaperOptions {
     /// Pixels of a PNG in an inch of the page, at most 4800 [default: 300].
     #[arg(long, value_name = "N", requires = "page", value_parser = clap::value_parser!(u16).range(1..=4800))]
     pub(crate) dpi: Option<u16>,
+}
+
+/// Reads a number from 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("not a number from 0 to 1".to_owned()),
+    }
 }
 
 /// An order of dots.

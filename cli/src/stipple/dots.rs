@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec2;
 use twelvefold::estimate::{ExactError, exactly};
-use twelvefold::refine::{ITERATIONS, RefineError, Refiner};
+use twelvefold::refine::{ClassRefiner, Classes, ITERATIONS, RefineError, Refiner};
 use twelvefold::{
     Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Pixels, Placement, Sample,
     Sampling, SamplingError, StippleMap,
@@ -167,6 +167,29 @@ fn refined(
         iteration();
     }
     refiner.write(dots)
+}
+
+/// A class for each of the even dots of all classes; moves them so that those of each class are even too.
+///
+/// # Errors
+/// [`RefineError`].
+pub(crate) fn classified(
+    classes: &Classes,
+    dots: &mut [DVec2],
+    iterations: usize,
+) -> Result<Vec<u8>, RefineError> {
+    let mut class_of = Vec::new();
+    let bytes = dots.len();
+    class_of.try_reserve_exact(bytes).map_err(|_| RefineError::Memory { bytes })?;
+    class_of.resize(dots.len(), 0);
+    if classes.planes().len() > 1 {
+        let mut refiner = ClassRefiner::new(classes, dots)?;
+        for _ in 0..iterations {
+            refiner.step();
+        }
+        refiner.write(dots, &mut class_of)?;
+    }
+    Ok(class_of)
 }
 
 /// A picture for a map, which keeps its pixels.

@@ -6,6 +6,7 @@ mod inputs;
 mod measure;
 mod outputs;
 mod paper;
+mod pens;
 mod tiling;
 
 use std::ffi::OsStr;

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::{complaint_about, csv, dots, photograph, program, stipple, strokes};
 
 /// Runs with these options and an output of this name; returns it and what was said.
-fn drawn(photo: &Path, name: &str, options: &[&str]) -> (Vec<u8>, String) {
+pub(crate) fn drawn(photo: &Path, name: &str, options: &[&str]) -> (Vec<u8>, String) {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join(name);
     let output = stipple(photo, &[&["-o", path.to_str().unwrap()], options].concat());
@@ -28,7 +28,7 @@ fn picture(folder: &TempDir, width: u32, height: u32, level: u8) -> PathBuf {
     path
 }
 
-fn least_distance(places: &[[f64; 2]]) -> f64 {
+pub(crate) fn least_distance(places: &[[f64; 2]]) -> f64 {
     // Sorted by x, so that only those near in x are compared.
     let mut sorted = places.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));

@@ -75,6 +75,23 @@ pub struct Radiance {
     pub warnings: Vec<String>,
 }
 
+impl ColorPicture {
+    /// Stretches each of red, green and blue, encoded, as [`Levels`] say.
+    pub fn level(&mut self, levels: Levels) {
+        let (black, range) = (levels.black / 255.0, (levels.white - levels.black) / 255.0);
+        let leveled = |light: f32| {
+            let encoded = srgb::encode(f64::from(light).clamp(0.0, 1.0));
+            let stretched = ((encoded - black) / range).clamp(0.0, 1.0);
+            srgb::decode(libm::pow(stretched, 1.0 / levels.gamma)) as f32
+        };
+        for [red, green, blue, _] in &mut self.pixels {
+            for light in [red, green, blue] {
+                *light = leveled(*light);
+            }
+        }
+    }
+}
+
 impl Picture {
     /// The sum of all importance: the area, in pixels, of black that would hold as many dots.
     pub fn total(&self) -> f64 {
@@ -219,7 +236,8 @@ pub fn read_layer(path: &Path, tone: Tone, layer: Option<&str>) -> Result<Pictur
     Ok(Picture { width, height, importance, range, warnings })
 }
 
-/// Reads the colors of a photograph, upright and in shape; of `tone` only the exposure counts.
+/// Reads the colors of a photograph, upright and in shape; of `tone` only the exposure
+/// counts (see [`ColorPicture::level`]).
 ///
 /// # Errors
 /// [`PictureError`].

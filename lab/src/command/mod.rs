@@ -1,5 +1,6 @@
 //! The subcommands, a module each.
 
+pub(crate) mod classes;
 pub(crate) mod evenness;
 pub(crate) mod figures;
 pub(crate) mod report;
