@@ -47,8 +47,8 @@ fn write_tables() -> Result<(), String> {
     let text = std::fs::read_to_string(DIGITS).map_err(|error| format!("{DIGITS}: {error}"))?;
     let digits = tiling::Digits::parse(&text).map_err(|error| format!("{DIGITS}, {error}"))?;
     let rules = tiling::Rules::new(&digits).map_err(|error| format!("{DIGITS}, {error}"))?;
-    let relaxation = read_relaxation()?;
-    let bytes = bake::bake(&rules, depth, relaxation.as_ref()).map_err(|error| match error {
+    let displacements = read_displacements()?;
+    let bytes = bake::bake(&rules, depth, displacements.as_ref()).map_err(|error| match error {
         bake::BakeError::Depth { .. } => format!("TWELVEFOLD_DEPTH: {error}"),
         _ => format!("{RELAXED}: {error}"),
     })?;
@@ -61,9 +61,9 @@ fn write_tables() -> Result<(), String> {
 }
 
 /// The relaxed offsets, unless the file is missing: then the tables hold fixed centres only.
-fn read_relaxation() -> Result<Option<bake::relaxation::Relaxation>, String> {
+fn read_displacements() -> Result<Option<bake::displacement::Displacements>, String> {
     match std::fs::read(RELAXED) {
-        Ok(bytes) => bake::relaxation::Relaxation::from_bytes(&bytes)
+        Ok(bytes) => bake::displacement::Displacements::from_bytes(&bytes)
             .map(Some)
             .map_err(|error| format!("{RELAXED}: {error}")),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),

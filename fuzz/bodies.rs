@@ -4,12 +4,13 @@
 use std::collections::BTreeSet;
 
 use glam::{DVec2, Vec2};
-use twelvefold::bake::{bake, relaxation::Relaxation};
+use twelvefold::bake::{bake, displacement::Displacements};
 use twelvefold::estimate::{Warp, Weighting, exactly, normalise, post_stratify};
 use twelvefold::tiling::{Digits, FCode, TileCounts, TileType};
 use twelvefold::{
     Amount, BilinearMap, Constant, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels,
-    Limits, Placement, Position, Sample, Sampling, SamplingError, Scalar as _, StippleMap, Tables,
+    Limits, Placement, Points, Position, Sample, Sampling, SamplingError, Scalar as _, StippleMap,
+    Tables,
 };
 use twelvefold_lab::paper;
 
@@ -35,10 +36,10 @@ fn files(data: &[u8]) {
         assert_eq!(tables.as_bytes(), data);
         use_tables(tables);
     }
-    if let Ok(relaxation) = Relaxation::from_bytes(data) {
-        assert_eq!(relaxation.to_bytes().unwrap(), data);
+    if let Ok(displacements) = Displacements::from_bytes(data) {
+        assert_eq!(displacements.to_bytes().unwrap(), data);
         // Another digit assignment than the tables' is refused.
-        if let Ok(baked) = bake(&Tables::built_in().rules(), 1, Some(&relaxation)) {
+        if let Ok(baked) = bake(&Tables::built_in().rules(), 1, Some(&displacements)) {
             use_tables(Tables::from_bytes(&baked).unwrap());
         }
     }
@@ -46,13 +47,13 @@ fn files(data: &[u8]) {
 
 /// Tables that passed all checks give sound sets, whatever offsets they hold.
 fn use_tables(tables: Tables<'_>) {
-    let placement = Placement::with_tables(Domain::unit(), 1, tables);
+    let placement = Placement::new_in(Domain::UNIT, 1, tables);
     let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(200.0)).unwrap();
     let part = Part { corner: DVec2::splat(0.3), size: DVec2::new(0.2, 0.6), shards: 2 };
-    parts(&sampling, whole::<DVec2, _>(&sampling, Domain::unit()), &part);
+    parts(&sampling, whole::<DVec2, _>(&sampling, Domain::UNIT), &part);
     if let Ok(relaxed) = sampling.relaxed() {
-        assert!(tables.relaxation().is_some());
-        parts(&relaxed, whole::<DVec2, _>(&relaxed, Domain::unit()), &part);
+        assert!(tables.displacements().is_some());
+        parts(&relaxed, whole::<DVec2, _>(&relaxed, Domain::UNIT), &part);
     }
 }
 
@@ -165,7 +166,7 @@ struct Part {
 /// Fixed and relaxed points in both precisions, whole, clipped and sharded.
 fn sample<I: Importance>(importance: &I, domain: Domain, seed: u64, amount: Amount, part: &Part) {
     let placement = Placement::new(domain, seed);
-    let Ok(fixed) = Sampling::with_limits(&placement, importance, amount, LIMITS) else {
+    let Ok(fixed) = Sampling::within(&placement, importance, amount, LIMITS) else {
         return;
     };
     let relaxed = fixed.relaxed().unwrap();
@@ -183,9 +184,16 @@ fn whole<P: Position + PartialEq, I: Importance>(
     sampling: &Sampling<'_, I>,
     domain: Domain,
 ) -> Option<Vec<Sample<P>>> {
+    all(sampling.points::<P>().ok()?, domain)
+}
+
+/// All points, which lie in the domain and are there once.
+fn all<P: Position + PartialEq, I: Importance>(
+    all: Points<'_, I, P>,
+    domain: Domain,
+) -> Option<Vec<Sample<P>>> {
     let mut ranks = BTreeSet::new();
     let mut points = Vec::new();
-    let all = sampling.points::<P>().ok()?;
     for sample in all {
         match sample {
             Ok(sample) => {
@@ -229,9 +237,10 @@ fn parts<P: Position + PartialEq, I: Importance>(
         assert!(clipped == inside, "clip {rectangle:?}");
     }
     let mut union = Vec::new();
-    for index in 0..part.shards as usize {
-        let Ok(shard) = sampling.shard(index, part.shards as usize) else { return };
-        let Some(points) = whole::<P, I>(&shard, domain) else { return };
+    let Ok(division) = sampling.divide(part.shards as usize) else { return };
+    for index in 0..division.of() {
+        let Ok(points) = division.part(index).and_then(|part| part.points::<P>()) else { return };
+        let Some(points) = all(points, domain) else { return };
         union.extend(points);
     }
     assert!(union == points, "{} shards", part.shards);
@@ -259,7 +268,7 @@ fn points_of_map(map: &ImageMap, seed: u64) {
         }
     }
     let amount = Amount::Points(n as f64);
-    if let Ok(sampling) = Sampling::with_limits(&placement, map, amount, LIMITS)
+    if let Ok(sampling) = Sampling::within(&placement, map, amount, LIMITS)
         && let Ok(points) = sampling.weighted(Weighting::Smoothed)
         && let Ok(mut points) = points.collect::<Result<Vec<_>, _>>()
     {

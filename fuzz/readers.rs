@@ -15,7 +15,11 @@ pub(crate) fn readers(data: &[u8]) {
     if std::fs::write(file.path(), data).is_err() {
         return;
     }
-    let tone = Tone { linear: data.len().is_multiple_of(2), invert: data.len() % 4 < 2 };
+    let tone = Tone {
+        linear: data.len().is_multiple_of(2),
+        invert: data.len() % 4 < 2,
+        ..Tone::default()
+    };
     if let Ok(picture) = picture::read(file.path(), tone) {
         assert_eq!(picture.importance.len(), picture.width * picture.height);
         assert!(picture.importance.iter().all(|value| (0.0..=1.0).contains(value)));

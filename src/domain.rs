@@ -12,7 +12,7 @@ pub struct Domain {
     size: DVec2,
 }
 
-/// Why a rectangle is no [`Domain`].
+/// Why a rectangle is not a [`Domain`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DomainError {
@@ -64,10 +64,7 @@ impl Domain {
     }
 
     /// [0, 1) × [0, 1).
-    #[must_use]
-    pub const fn unit() -> Self {
-        Self { min: DVec2::ZERO, size: DVec2::ONE }
-    }
+    pub const UNIT: Self = Self { min: DVec2::ZERO, size: DVec2::ONE };
 
     /// The corner with the least coordinates; it belongs to the domain.
     #[must_use]
@@ -108,9 +105,9 @@ impl Domain {
 
     /// The smallest region that holds the whole domain.
     #[must_use]
-    pub fn region(&self) -> Region {
+    pub fn disc(&self) -> Disc {
         // A few ulp more than half the diagonal, for the rounding of the centre.
-        Region {
+        Disc {
             centre: self.min + 0.5 * self.size,
             radius: self.diagonal() * (0.5 + 1e-9) + 1e-15 * self.min.abs().max_element(),
         }
@@ -119,7 +116,7 @@ impl Domain {
 
 /// A closed disc in the caller's units: where the points of a subtree can lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Region {
+pub struct Disc {
     /// The centre.
     pub centre: DVec2,
     /// The radius, not negative.

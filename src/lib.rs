@@ -1,7 +1,7 @@
 //! Well-spread points with a density you control, from tables baked at build time.
 //!
 //! twelvefold places points by Ostromoukhov's dodecagonal tiling: four tile types subdivide into each
-//! other for ever; every tile gives one point and a rank; a point is accepted where the importance
+//! other endlessly; every tile gives one point and a rank; a point is accepted where the importance
 //! reaches its rank. The result is a point set that is evenly spread at any density, follows an
 //! importance map, and is the same, bit for bit, on every machine.
 //!
@@ -31,71 +31,73 @@
 //! 4. [`Importance`]: value at a point, upper bound over a region. [`Constant`], [`ImageMap`],
 //!    [`Function`], or your own.
 //! 5. [`Sampling`]: descends only where a point can be accepted, and reads blocks of points from the
-//!    tables. Received by [`fill`](Sampling::fill), [`visit`](Sampling::visit) or
-//!    [`points`](Sampling::points).
+//!    tables. Received by [`fill`](Sampling::fill), by [`points`](Sampling::points), or in parts of a
+//!    [`Division`](Sampling::divide).
+//!
+//! After that, [`estimate`] makes weights of fixed points, and `refine` (with `std`) moves points until
+//! they draw a picture. `ARCHITECTURE.md` in the repository shows where each of these lives.
 //!
 //! # Promises
 //!
 //! The same crate version, tables, domain, seed, importance and amount give the same points on every
 //! platform, whatever the baked depth. Decisions compare integers, or floating-point numbers that only
-//! ever came from +, −, ×, ÷ and √. No function panics on any input; mistakes are error values that
-//! say where they are. The library contains no `unsafe` code.
+//! ever came from +, −, ×, ÷ and √.
+//!
+//! Numbers, sizes and bytes that do not fit are error values that say where they are, not panics. What a
+//! caller's own importance or closure does is its own, and memory that runs out ends the program as it
+//! does elsewhere in Rust. The library contains no `unsafe` code.
 //!
 //! # Features
 //!
-//! Libraries want `default-features = false`, which needs `alloc` only, and what they use of these:
+//! The default is `std` and `simd`. Without default features the library needs `alloc` only.
 //!
+//! - `std` (default): the module `refine`; glam and serde use `std`;
 //! - `simd` (default): wider vector instructions, chosen when the program runs; the same points;
-//! - `parallel`: `fill_parallel` and `Shards`, with rayon; the same points in the same order;
-//! - `measure`: the module `measure`, of point sets' evenness and discrepancy;
-//! - `train`: the module `relax`, which trains relaxed offsets;
-//! - `cli` (default): the program and all that it needs;
-//! - `std`: glam and serde use `std`.
+//! - `parallel`: `Shards`, and threads for `refine`, with rayon; the same points in the same order.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
-#[cfg(test)]
-mod accuracy;
 /// The README's example, compiled and run with the other documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct ReadmeExample;
 
 pub mod bake;
-mod clip;
 mod domain;
-mod effort;
-mod environment;
+mod emit;
+mod error;
 pub mod estimate;
+pub mod export;
 pub mod importance;
-#[cfg(test)]
-mod oracle;
-#[cfg(feature = "parallel")]
-mod parallel;
+pub mod light;
 mod placement;
-mod points;
-mod relaxed;
+mod position;
+#[doc(hidden)]
+pub mod random;
+#[cfg(feature = "std")]
+pub mod refine;
 mod sampling;
-mod seed;
+mod simd;
 mod tables;
+#[cfg(test)]
+mod tests;
 pub mod tiling;
+mod tree;
 mod walk;
 
-pub use domain::{Domain, DomainError, Region};
-pub use effort::Effort;
-pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
-pub use importance::{
-    BilinearMap, Constant, Function, ImageMap, Importance, InvalidPixels, MapError, PixelData,
-    PixelView, Probed, StippleMap,
-};
+pub use domain::{Disc, Domain, DomainError};
 #[cfg(feature = "parallel")]
-pub use parallel::Shards;
+pub use emit::Shards;
+pub use emit::{Division, Effort, Filled, Part, Points, Sample};
+pub use error::SamplingError;
+pub use importance::{
+    BilinearMap, Constant, EnvironmentError, EnvironmentMap, EnvironmentSample, Function, ImageMap,
+    Importance, InvalidPixels, MapError, PixelData, PixelView, Probed, StippleMap,
+};
 pub use placement::Placement;
-pub use points::{Filled, Points, Sample};
-pub use relaxed::RelaxationTable;
-pub use sampling::{Amount, Limits, Sampling, SamplingError};
-pub use tables::{BlockTable, Tables, TablesError};
-pub use walk::scalar::{Coordinate, Position, Scalar};
+pub use position::{Coordinate, Position, Scalar};
+pub use sampling::{Amount, Limits, Sampling};
+pub use tables::{BlockTable, DisplacementTable, Tables, TablesError};

@@ -3,24 +3,25 @@
 use glam::DVec2;
 
 use crate::domain::Domain;
-use crate::relaxed::RelaxationTable;
-use crate::sampling::SamplingError;
-use crate::seed::SplitMix64;
-use crate::tables::Tables;
-use crate::tiling::cyclotomic::SQRT_3;
+use crate::error::SamplingError;
+use crate::random::SplitMix64;
+use crate::tables::{DisplacementTable, ExactPoint, Tables};
+use crate::tiling::numbers::{REACH, SQRT_3, direction, lambda_power};
 use crate::tiling::{MAX_LEVEL, TileCounts};
-use crate::walk::batch::tile_counts;
-use crate::walk::frame::Frame;
-use crate::walk::node::{ExactPoint, Node};
-use crate::walk::relaxed::FIRST_RELAXED_LEVEL;
+use crate::tree::frame::Frame;
+use crate::tree::node::Node;
 
 /// The level of the few tiles at which every walk of a placement starts.
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
 
+/// Points of earlier levels stay where they are: they occur where fewer than some four points are
+/// expected in a domain, and the tiles from which they could move in would be very many.
+pub(crate) const FIRST_RELAXED_LEVEL: u8 = FRONTIER_LEVEL + 2;
+
 /// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
 /// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
 /// than 9 fit; relaxed points can move in from up to 0.58 edges farther
-/// ([`MAX_LENGTH`](crate::bake::relaxation::MAX_LENGTH)), which admits 17.
+/// ([`MAX_LENGTH`](crate::bake::displacement::MAX_LENGTH)), which admits 17.
 const MAX_FRONTIER: usize = 24;
 
 /// The edge of the frontier's tiles, in diagonals of the domain. The root's edge is λ⁴ = 194 times
@@ -30,10 +31,6 @@ const FRONTIER_EDGE: f64 = 4.0 / 3.0;
 
 /// Successive tile counts differ by a factor of at most 14, edges by its root; a little more for rounding.
 const MAX_STRETCH: f64 = 3.75;
-
-/// No descendant of a tile is farther from its centre than this many of its edges: children are at
-/// most 2 cos 15° child edges away, and 2 cos 15°/(λ − 1) = 1/√2 exactly.
-pub(crate) const REACH: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// The part of [`REACH`] that descendants at most 0, 1, 2, 3 levels down come near: a child is within
 /// 2 cos 15°/λ edges, a grandchild within 2 cos 15°(1/λ + 1/λ²), and so on: 1 − λ^−j of the whole.
@@ -77,7 +74,7 @@ impl Placement<'static> {
     /// The domain's placement under this seed, with the tables of this build.
     #[must_use]
     pub fn new(domain: Domain, seed: u64) -> Self {
-        Self::with_tables(domain, seed, Tables::built_in())
+        Self::new_in(domain, seed, Tables::built_in())
     }
 
     /// A placement whose scale makes a constant density a *complete level* of the tiling.
@@ -92,7 +89,7 @@ impl Placement<'static> {
     ///
     /// ```
     /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling};
-    /// let placement = Placement::aligned(Domain::unit(), 7, 1000.0)?;
+    /// let placement = Placement::aligned(Domain::UNIT, 7, 1000.0)?;
     /// let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Density(1000.0))?;
     /// assert!((sampling.expected_points().unwrap() - 1000.0).abs() < 1e-9);
     /// # Ok::<(), twelvefold::SamplingError>(())
@@ -102,14 +99,14 @@ impl Placement<'static> {
     /// [`SamplingError::Amount`] unless the density is finite and positive, [`SamplingError::TooDense`]
     /// past the deepest level.
     pub fn aligned(domain: Domain, seed: u64, density: f64) -> Result<Self, SamplingError> {
-        Self::aligned_with_tables(domain, seed, density, Tables::built_in())
+        Self::aligned_in(domain, seed, density, Tables::built_in())
     }
 }
 
 impl<'t> Placement<'t> {
     /// The same with other tables. Tables of another depth but the same digits give the same points.
     #[must_use]
-    pub fn with_tables(domain: Domain, seed: u64, tables: Tables<'t>) -> Self {
+    pub fn new_in(domain: Domain, seed: u64, tables: Tables<'t>) -> Self {
         Self::with_scale(domain, seed, FRONTIER_EDGE, tables)
     }
 
@@ -117,7 +114,7 @@ impl<'t> Placement<'t> {
     ///
     /// # Errors
     /// As [`aligned`](Placement::aligned).
-    pub fn aligned_with_tables(
+    pub fn aligned_in(
         domain: Domain,
         seed: u64,
         density: f64,
@@ -136,11 +133,11 @@ impl<'t> Placement<'t> {
             .iter()
             .map(|tiles| *tiles as f64)
             .find(|tiles| *tiles >= least_tiles)
-            .ok_or(SamplingError::TooDense { near: domain.region().centre })?;
+            .ok_or(SamplingError::TooDense { near: domain.disc().centre })?;
         let stretch = libm::sqrt(tiles / least_tiles);
         if !stretch.is_finite() || stretch > MAX_STRETCH {
             // Less than one point in the whole root: any scale is as good.
-            return Ok(Self::with_tables(domain, seed, tables));
+            return Ok(Self::new_in(domain, seed, tables));
         }
         Ok(Self::with_scale(domain, seed, FRONTIER_EDGE * stretch, tables))
     }
@@ -192,7 +189,7 @@ impl<'t> Placement<'t> {
             let half_diagonal =
                 0.5 / self.frontier_edge / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
             // Relaxed points move in from farther away.
-            let step = self.tables.relaxation().map_or(0.0, RelaxationTable::longest)
+            let step = self.tables.displacements().map_or(0.0, DisplacementTable::longest)
                 / lambda_power(usize::from(FIRST_RELAXED_LEVEL - node.level));
             if to_domain.length() > REACH + half_diagonal + step + 1e-9 {
                 continue;
@@ -208,9 +205,8 @@ impl<'t> Placement<'t> {
                 }
                 continue;
             }
-            let (tiles, before) = tile_counts(node.level);
             for digit in (0..node.kind.child_count()).rev() {
-                if let Some(child) = node.child(&self.tables, digit, tiles, before) {
+                if let Some(child) = node.child(&self.tables, digit) {
                     stack[waiting] = child;
                     waiting += 1;
                 }
@@ -279,11 +275,7 @@ impl<'t> Placement<'t> {
 
     /// An edge of `level` that makes `rotation`·30° with the tiling's x axis, in units.
     pub(crate) fn turned_edge(&self, level: u8, rotation: u8) -> DVec2 {
-        const H: f64 = 0.5 * SQRT_3;
-        const COSINES: [f64; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
-        let k = usize::from(rotation % 12);
-        let turn = DVec2::new(COSINES[k], COSINES[(k + 9) % 12]);
-        (2.0 * self.half_edge(level)).rotate(turn)
+        (2.0 * self.half_edge(level)).rotate(DVec2::from_array(direction(rotation)))
     }
 
     /// A node's centre, relative to the domain's least corner.
@@ -297,15 +289,6 @@ impl<'t> Placement<'t> {
     pub(crate) fn reach(&self, level: u8, levels: usize) -> f64 {
         self.reach[usize::from(level)] * WITHIN[levels.min(WITHIN.len() - 1)] + self.slack
     }
-}
-
-/// λ^n = a + b√3 with integers a, b: the sum of two positive terms, accurate to an ulp.
-fn lambda_power(n: usize) -> f64 {
-    let (mut a, mut b) = (1i64, 0i64);
-    for _ in 0..n {
-        (a, b) = (2 * a + 3 * b, a + 2 * b);
-    }
-    a as f64 + SQRT_3 * b as f64
 }
 
 /// Frontier edges in a root edge, λ⁴.

@@ -1,11 +1,9 @@
 //! After warm-up a frame allocates nothing.
 
-use std::ops::ControlFlow;
-
 use allocation_counter::measure;
 use glam::{DVec2, Vec2};
 use twelvefold::{
-    Amount, Domain, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Sample, Sampling,
+    Amount, Domain, ImageMap, InvalidPixels, PixelData, PixelView, Placement, Sampling,
 };
 
 #[test]
@@ -24,7 +22,7 @@ fn a_frame_allocates_nothing() {
     let mut frame = || {
         let view = PixelView::new(PixelData::F32(&pixels), 480, 270).unwrap();
         map.update(&view, InvalidPixels::Reject).unwrap();
-        let patch = PixelView::with_stride(PixelData::U8(&bytes), 100, 50, 480).unwrap();
+        let patch = PixelView::strided(PixelData::U8(&bytes), 100, 50, 480).unwrap();
         map.update_at(17, 31, &patch, InvalidPixels::ZeroAll).unwrap();
         let placement = Placement::new(map.domain(), 7);
         let sampling = Sampling::new(&placement, &map, Amount::Points(60_000.0)).unwrap();
@@ -32,12 +30,8 @@ fn a_frame_allocates_nothing() {
         count += sampling.fill_columns(&mut x, &mut y).unwrap().written;
         let rectangle = Domain::new(DVec2::splat(50.0), DVec2::splat(80.0)).unwrap();
         count += sampling.clipped(rectangle).points::<Vec2>().unwrap().count();
-        let part = sampling.shard(1, 3).unwrap();
-        part.visit(|_: Sample<DVec2>| {
-            count += 1;
-            ControlFlow::Continue(())
-        })
-        .unwrap();
+        let part = sampling.divide(3).unwrap().part(1).unwrap();
+        count += part.points::<DVec2>().unwrap().count();
     };
     frame();
     let counted = measure(frame);

@@ -6,13 +6,18 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec2;
+use twelvefold::light::{Frame, InfiniteRadiance};
 use twelvefold::tiling::TileType;
 use twelvefold_lab::measure::Window;
+
+use crate::drawing::Format;
+use crate::page::length::Length;
+use crate::page::options::PaperOptions;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
 
-/// The most points that are counted exactly: they are sorted in memory, 56 bytes each.
+/// The most points that are counted exactly: they are sorted in memory, some 90 bytes each.
 pub(crate) const MAX_EXACT: u64 = 10_000_000;
 
 /// Well-spread points with a density you control, from a dodecagonal aperiodic tiling.
@@ -30,12 +35,11 @@ pub(crate) enum Command {
     Stipple(StippleOptions),
     /// Choose directions towards the light of an environment map, as CSV.
     ///
-    /// The columns are x,y,z,pdf,red,green,blue: a direction of length 1, z up; its probability density
-    /// per steradian; and the map's radiance there. The light that falls on a surface is estimated by
-    /// the sum over all lines of radiance × cosine / (N × pdf).
+    /// The columns are x,y,z,pdf,red,green,blue: a direction of length 1; its probability density per
+    /// steradian; and the map's radiance there. The light that falls on a surface is estimated by the
+    /// sum over all lines of radiance × cosine / (N × pdf).
     ///
-    /// The map is a latitude-longitude image: the upper border is +z, and the left border and the
-    /// quarter, half and three quarters of the width are +x, +y, -x and -y.
+    /// The map is a latitude-longitude image, twice as wide as high; --frame says which way it faces.
     Envmap(EnvmapOptions),
     /// Measure how even a list of points is, as CSV.
     ///
@@ -94,21 +98,20 @@ pub(crate) struct MeasureOptions {
 
 /// Reads a rectangle.
 fn window(text: &str) -> Result<Window, String> {
-    let numbers: Vec<f64> = text.split(',').filter_map(|n| n.trim().parse().ok()).collect();
-    match numbers[..] {
-        [x, y, width, height]
-            if numbers.iter().all(|n| n.is_finite()) && width > 0.0 && height > 0.0 =>
-        {
-            Ok(Window::new(DVec2::new(x, y), DVec2::new(width, height)))
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, width, height]) => {
+            Window::new(DVec2::new(x, y), DVec2::new(width, height)).map_err(|e| e.to_string())
         }
-        _ => Err("not four finite numbers X,Y,WIDTH,HEIGHT with a size above zero".to_owned()),
+        _ => Err("not four numbers X,Y,WIDTH,HEIGHT".to_owned()),
     }
 }
 
 /// Options of `twelvefold envmap`.
 #[derive(Debug, Args)]
 pub(crate) struct EnvmapOptions {
-    /// The environment map: Radiance HDR or OpenEXR, told apart by content.
+    /// The environment map, or `-` for standard input: Radiance HDR, OpenEXR, PFM or float TIFF, told
+    /// apart by content.
     pub(crate) map: PathBuf,
 
     /// How many directions, at most 10,000,000. Exactly as many are chosen.
@@ -123,13 +126,67 @@ pub(crate) struct EnvmapOptions {
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) seed: u64,
 
+    /// Which way the image faces: the coordinates of a renderer.
+    #[arg(long, value_enum, default_value_t = FrameName::Pbrt)]
+    pub(crate) frame: FrameName,
+
+    /// Turns the surroundings about the frame's up axis, as a rotation by so many degrees in that
+    /// renderer's scene would: counterclockwise seen from above, clockwise in pbrt's left-handed
+    /// coordinates.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = finite, allow_hyphen_values = true)]
+    pub(crate) rotate: f64,
+
     /// What to do with negative radiance, which resampling leaves in real maps.
     #[arg(long, value_enum, default_value_t = Negative::Reject)]
     pub(crate) negative: Negative,
 
+    /// What to do with infinite radiance, as of a sun that overflowed: `reject`, `zero`, or `clamp=V`,
+    /// which takes V (in the map's units) for it.
+    #[arg(long, value_name = "HOW", default_value = "reject", value_parser = infinite)]
+    pub(crate) infinite: InfiniteRadiance,
+
+    /// What to do with radiance that is not a number.
+    #[arg(long, value_enum, default_value_t = Nan::Reject)]
+    pub(crate) nan: Nan,
+
     /// How directions are chosen.
-    #[arg(long, value_enum, default_value_t = Method::Progressive)]
+    #[arg(long, value_enum, default_value_t = Method::Sobol)]
     pub(crate) method: Method,
+
+    /// How the map is read between its pixels' centres. `bilinear` is for `--method sobol` only.
+    #[arg(long, value_enum, default_value_t = FilterName::Nearest)]
+    pub(crate) filter: FilterName,
+}
+
+/// A convention for latitude-longitude images.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FrameName {
+    /// z up, left-handed; the image's centre is -x, right of it -y.
+    Pbrt,
+    /// y up, right-handed; the image's centre is +z, right of it -x.
+    Mitsuba,
+    /// z up, right-handed; the image's centre is +x, right of it -y. Cycles' as well.
+    #[value(alias = "cycles")]
+    Blender,
+    /// y up, right-handed; the image's centre is +x, right of it +z. three.js' as well.
+    #[value(alias = "threejs", alias = "three.js")]
+    Gltf,
+    /// y up, right-handed; the image's centre is +z, right of it -x. USD's as well.
+    #[value(alias = "usd")]
+    Openexr,
+}
+
+impl FrameName {
+    /// The frame of this name.
+    pub(crate) fn frame(self) -> Frame {
+        match self {
+            Self::Pbrt => Frame::PBRT,
+            Self::Mitsuba => Frame::MITSUBA,
+            Self::Blender => Frame::BLENDER,
+            Self::Gltf => Frame::GLTF,
+            Self::Openexr => Frame::OPENEXR,
+        }
+    }
 }
 
 /// A policy for negative radiance.
@@ -141,13 +198,59 @@ pub(crate) enum Negative {
     Zero,
 }
 
+/// A policy for radiance that is not a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Nan {
+    /// It is an error, which names the first pixel.
+    Reject,
+    /// It counts as zero.
+    Zero,
+}
+
+/// Reads a policy for infinite radiance.
+fn infinite(text: &str) -> Result<InfiniteRadiance, String> {
+    match text {
+        "reject" => Ok(InfiniteRadiance::Reject),
+        "zero" => Ok(InfiniteRadiance::Zero),
+        _ => match text.strip_prefix("clamp=").map(str::parse::<f32>) {
+            Some(Ok(value)) if value.is_finite() && value >= 0.0 => {
+                Ok(InfiniteRadiance::Clamp(value))
+            }
+            Some(_) => Err("clamp= takes a finite number that is not negative".to_owned()),
+            None => Err("is none of reject, zero and clamp=V".to_owned()),
+        },
+    }
+}
+
+/// Reads a finite number.
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a finite number".to_owned()),
+    }
+}
+
 /// A way to choose directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
-    /// In an order of which each beginning is itself a good set.
+    /// Scrambled Sobol points, warped: the least error for any number, the fastest below some 100, and
+    /// each beginning is itself a good set, best with 2^k directions.
+    Sobol,
+    /// The tiling's points, thresholded by the map, in an order of which each beginning is itself a good
+    /// set: where the map does not change from frame to frame, neither do its directions.
     Progressive,
-    /// A complete level of the tiling, warped: the least error for this number, in no useful order.
+    /// A complete level of the tiling, warped, in no useful order: evenest in all directions alike,
+    /// level with Sobol where occluders have edges at any angle.
     Warp,
+}
+
+/// A way to read between pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FilterName {
+    /// A pixel's radiance holds over the whole pixel.
+    Nearest,
+    /// Radiance is interpolated between the pixels' centres, over the seam and the poles.
+    Bilinear,
 }
 
 /// Options of `twelvefold tiling`.
@@ -176,25 +279,59 @@ fn tile_type() -> impl TypedValueParser<Value = TileType> {
 /// Options of `twelvefold stipple`.
 #[derive(Debug, Args)]
 pub(crate) struct StippleOptions {
-    /// The photograph: PNG, JPEG, TIFF, Radiance HDR or OpenEXR, told apart by content.
+    /// The photograph, or `-` for standard input: PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa,
+    /// QOI, farbfeld, Radiance HDR or OpenEXR, told apart by content.
     ///
-    /// Transparent pixels are laid over white. In float files negative values count as zero and
-    /// values above one as white; a NaN or an infinity is an error.
+    /// Colour profiles are followed, and the photograph is turned upright. Transparent pixels get no
+    /// dots. In float files negative values count as zero and values above one as white; a NaN or an
+    /// infinity is an error.
     pub(crate) photo: PathBuf,
 
-    /// Where the dots go: a file ending in .svg, .png or .csv, or `-` for CSV on standard output.
+    /// The gray level, of 255, from which on the photograph counts as white: 250 for paper that was
+    /// scanned a little gray.
+    ///
+    /// Levels are encoded sRGB also with --linear, which takes the light of this level as white.
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub(crate) white: Option<f64>,
+
+    /// The gray level, of 255, up to which the photograph counts as black; below that of --white.
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    pub(crate) black: Option<f64>,
+
+    /// Lighten (above 1) or darken the middle: brightness from 0 to 1, after --black and --white, is
+    /// raised to 1/GAMMA.
+    #[arg(long, value_name = "GAMMA", value_parser = positive)]
+    pub(crate) gamma: Option<f64>,
+
+    /// Multiply the light of a float file by 2 to this power, before anything else.
+    #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
+    pub(crate) exposure: Option<f64>,
+
+    /// Which layer of an OpenEXR file is drawn, such as ViewLayer.Combined [default: the one without a
+    /// name, or the only one].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) layer: Option<String>,
+
+    /// Where the dots go: a file ending in .svg, .png, .pdf, .csv or .npy, or `-` for standard output, as
+    /// CSV unless `--format` says otherwise.
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// How many dots, at most 50,000,000 [default: one every 3 pixels where the photograph is black,
-    /// that is a ninth of the sum of all pixels' darkness from 0 to 1].
+    /// What to write, whatever the name of the output: a drawing, or a list of places, of which `npy` is an
+    /// array of shape (dots, 2) and type float32.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<Format>,
+
+    /// How many dots, at most 50,000,000 [default: a ninth of the sum of all pixels' darkness from 0 to 1,
+    /// that is one every 3 pixels where the photograph is black; at least 3,000 where that many fit four
+    /// to a pixel, at most 30,000].
     ///
     /// The number drawn is close to this, not equal to it.
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]
     pub(crate) points: Option<u64>,
 
-    /// Exactly N dots, at most 10,000,000, in an order of which each beginning is itself a good
-    /// stippling.
+    /// Exactly N dots, at most 10,000,000. With `--refine 0` they are in an order of which each beginning is
+    /// itself a good stippling.
     #[arg(
         long,
         value_name = "N",
@@ -207,20 +344,35 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_name = "SEED", default_value_t = 0)]
     pub(crate) seed: u64,
 
-    /// A dot's diameter in pixels of the photograph [default: the one at which the dots' areas add up
-    /// to the whole area where the photograph is black].
+    /// A dot's diameter, or the width of the line, in pixels of the photograph; with `--page` in mm, or in
+    /// inches as in 0.02in [default: the one at which the dots' areas add up to the whole area where the
+    /// photograph is black; of a line, the one at which it covers 0.8 of that].
     ///
-    /// Of no effect on CSV.
-    #[arg(long, value_name = "PIXELS", value_parser = positive)]
-    pub(crate) dot_size: Option<f64>,
+    /// With `--pen` only for `--marks ring`. Of no effect on CSV and NPY.
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) dot_size: Option<Length>,
 
-    /// Where dots may lie: `relaxed` moves each a little so that they are evenly spread at every
-    /// density; `fixed` leaves them at the centres of tiles, where rows and clumps show, but where
-    /// more dots only ever add to fewer.
+    /// How often the dots are moved to draw the picture better, at most 1000; 10 take about 3 microseconds
+    /// a dot. 0 leaves them where the tiling puts them, which needs no memory for them.
     ///
-    /// [default: relaxed, but fixed with `--exact`, which knows no other]
+    /// [default: 10; 0 from two million dots on]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(..=1000))]
+    pub(crate) refine: Option<u16>,
+
+    /// Where dots lie before they are refined: `relaxed`, where they are evenly spread at every density;
+    /// `fixed`, at the centers of tiles, where rows and clumps show, but where more dots only ever add
+    /// to fewer.
+    ///
+    /// [default: relaxed; `--exact` begins with fixed ones]
+    #[arg(long, value_enum, value_name = "HOW", conflicts_with = "exact")]
+    pub(crate) centers: Option<Centers>,
+
+    /// Whether dots allow for the ink that is lost where they overlap: `correct` puts more of them where it
+    /// is dark, so that ink covers as much as the photograph asks for; `ignore` puts as many as it asks.
+    ///
+    /// [default: correct in pictures, ignore in lists of points]
     #[arg(long, value_enum, value_name = "HOW")]
-    pub(crate) centres: Option<Centres>,
+    pub(crate) dot_gain: Option<DotGain>,
 
     /// Put dots where the photograph is light, and draw them white on black.
     #[arg(long)]
@@ -231,24 +383,52 @@ pub(crate) struct StippleOptions {
     #[arg(long)]
     pub(crate) linear: bool,
 
-    /// Size of the SVG or PNG picture, as a multiple of the photograph's; dots grow with it.
+    /// Size of the SVG, PNG or PDF picture, as a multiple of the photograph's; dots grow with it.
     ///
-    /// Of no effect on CSV, whose unit is always the photograph's pixel.
+    /// Of no effect on CSV and NPY, whose unit without `--page` is always the photograph's pixel.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     pub(crate) scale: f64,
 
     /// Say nothing but errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+
+    #[command(flatten)]
+    pub(crate) paper: PaperOptions,
 }
 
-/// Where dots may lie.
+/// What is done about ink that overlaps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Centres {
+pub(crate) enum DotGain {
+    /// More dots where it is dark.
+    Correct,
+    /// Nothing.
+    Ignore,
+}
+
+/// Where dots lie before they are refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Centers {
     /// Moved aside, evenly spread.
     Relaxed,
     /// At the centres of tiles.
     Fixed,
+}
+
+/// Reads a gray level.
+fn level(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(level) if (0.0..=255.0).contains(&level) => Ok(level),
+        _ => Err("not a number from 0 to 255".to_owned()),
+    }
+}
+
+/// Reads a number of stops.
+fn stops(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(stops) if (-128.0..=128.0).contains(&stops) => Ok(stops),
+        _ => Err("not a number from -128 to 128".to_owned()),
+    }
 }
 
 /// Reads a finite number above zero.
@@ -267,6 +447,15 @@ mod tests {
     fn the_command_line_is_well_formed() {
         use clap::CommandFactory as _;
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn policies_for_infinities_have_names() {
+        assert_eq!(infinite("zero"), Ok(InfiniteRadiance::Zero));
+        assert_eq!(infinite("clamp=65504"), Ok(InfiniteRadiance::Clamp(65504.0)));
+        for bad in ["", "clamp", "clamp=", "clamp=-1", "clamp=inf", "clamp=NaN", "Zero"] {
+            assert!(infinite(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

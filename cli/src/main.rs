@@ -4,6 +4,9 @@
 mod args;
 mod command;
 mod drawing;
+mod order;
+mod page;
+mod stipple;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -13,7 +16,7 @@ use clap::Parser as _;
 use twelvefold_files::failure::Failure;
 
 use crate::args::{Arguments, Command};
-use crate::command::{envmap, measure, stipple, tables, tiling};
+use crate::command::{envmap, measure, tables, tiling};
 
 fn main() -> ExitCode {
     match process(&Arguments::parse()) {
@@ -28,7 +31,7 @@ fn main() -> ExitCode {
 
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
-        Command::Stipple(options) => stipple::run(options),
+        Command::Stipple(options) => command::stipple::run(options),
         Command::Envmap(options) => envmap::run(options),
         Command::Measure(options) => measure::run(options),
         Command::Tables => tables::run(),

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use twelvefold::Tables;
 use twelvefold::bake::bake;
-use twelvefold::bake::relaxation::{DELTA, Layer, Relaxation, Slot, born_classes};
+use twelvefold::bake::displacement::{DELTA, Displacements, Layer, Slot, born_classes};
 use twelvefold::tiling::Digits;
 
 #[path = "../../fuzz/bodies.rs"]
@@ -133,16 +133,16 @@ fn valid_tables() -> [(&'static str, Vec<u8>); 4] {
         ];
         Layer::new(number, slots).unwrap()
     };
-    let relaxation = Relaxation {
+    let displacements = Displacements {
         digits: rules.digits().derivation_order(),
         provenance: "for fuzzing".to_owned(),
         smooth: layer(0),
         rough: Some(layer(1)),
     };
-    let file = relaxation.to_bytes().unwrap();
+    let file = displacements.to_bytes().unwrap();
     [
         ("depth-1", bake(&rules, 1, None).unwrap()),
-        ("depth-1-relaxed", bake(&rules, 1, Some(&relaxation)).unwrap()),
+        ("depth-1-relaxed", bake(&rules, 1, Some(&displacements)).unwrap()),
         ("relaxation", file),
         ("digits", include_bytes!("../../tables/digits.txt").to_vec()),
     ]
@@ -167,7 +167,7 @@ fn the_corpus_holds_valid_files_of_each_kind() {
     committed("tables", &files);
     for (name, bytes) in &files {
         let known = match *name {
-            "relaxation" => Relaxation::from_bytes(bytes).is_ok(),
+            "relaxation" => Displacements::from_bytes(bytes).is_ok(),
             "digits" => std::str::from_utf8(bytes).is_ok_and(|text| Digits::parse(text).is_ok()),
             _ => Tables::from_bytes(bytes).is_ok(),
         };

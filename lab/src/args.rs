@@ -23,6 +23,14 @@ pub(crate) enum Command {
     Report(ReportOptions),
     /// Draw the paper's figures, fig1.svg to fig7.svg, from this program's own code.
     Figures(FiguresOptions),
+    /// Measure nanoseconds a point, ours and rivals', on one thread and two.
+    ///
+    /// Writes speed.md and speed.svg, and the former to standard output. Takes some ten minutes.
+    Speed(SpeedOptions),
+    /// Measure how even uniform point sets are, ours and rivals': the worst of a few sets a line.
+    ///
+    /// Power at low frequency (white noise = 1), mean and least nearest distance (hexagonal lattice = 1).
+    Evenness(EvennessOptions),
 }
 
 /// Options of `twelvefold-lab report`.
@@ -55,6 +63,22 @@ pub(crate) struct FiguresOptions {
     /// The folder for the seven files, made if missing; files of the same names are replaced.
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
+}
+
+/// Options of `twelvefold-lab speed`.
+#[derive(Debug, Args)]
+pub(crate) struct SpeedOptions {
+    /// The folder for the report, made if missing; files of the same names are replaced.
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+}
+
+/// Options of `twelvefold-lab evenness`.
+#[derive(Debug, Args)]
+pub(crate) struct EvennessOptions {
+    /// Points a set; the time is O(n²).
+    #[arg(long, value_name = "N", default_value_t = 16_384, value_parser = clap::value_parser!(u32).range(64..=1 << 20))]
+    pub(crate) points: u32,
 }
 
 /// Options of `twelvefold-lab train`.

@@ -12,7 +12,7 @@ use clap::Parser as _;
 use twelvefold_files::failure::Failure;
 
 use crate::args::{Arguments, Command};
-use crate::command::{figures, report, train};
+use crate::command::{evenness, figures, report, speed, train};
 
 fn main() -> ExitCode {
     match process(&Arguments::parse()) {
@@ -30,5 +30,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
         Command::Train(options) => train::run(options),
         Command::Report(options) => report::run(options),
         Command::Figures(options) => figures::run(options),
+        Command::Speed(options) => speed::run(options),
+        Command::Evenness(options) => evenness::run(options),
     }
 }

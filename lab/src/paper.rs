@@ -7,10 +7,10 @@
 use twelvefold::tiling::{FCode, MAX_LEVEL, RankError, TileCounts};
 
 /// λ = 2 + √3, the linear scaling factor of one subdivision.
-pub const LAMBDA: f64 = 2.0 + twelvefold::tiling::cyclotomic::SQRT_3;
+pub const LAMBDA: f64 = 2.0 + twelvefold::tiling::numbers::SQRT_3;
 
 /// δ = λ² = 7 + 4√3, the area scaling factor; also λ₁ of equations 6 and 7.
-pub const DELTA: f64 = 7.0 + 4.0 * twelvefold::tiling::cyclotomic::SQRT_3;
+pub const DELTA: f64 = 7.0 + 4.0 * twelvefold::tiling::numbers::SQRT_3;
 
 /// λ₂ = 7 − 4√3 = 1/δ, written as the quotient because the difference cancels.
 const LAMBDA_2: f64 = 1.0 / DELTA;

@@ -30,6 +30,11 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// Uniform in [0, 1)².
+    pub fn point(&mut self) -> glam::DVec2 {
+        glam::DVec2::new(self.unit(), self.unit())
+    }
+
     /// Uniform in [0, n) for n > 0, with a bias below n/2⁶⁴.
     pub fn below(&mut self, n: u64) -> u64 {
         ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64

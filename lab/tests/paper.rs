@@ -10,7 +10,7 @@ use twelvefold_lab::paper::{
 fn codes(root: TileType, levels: usize) -> Vec<FCode> {
     let mut codes = vec![FCode::parse(root, "").unwrap()];
     for _ in 0..levels {
-        // Every digit that makes a possible word: tests/numbering.rs shows that these are the tiles.
+        // Every digit that makes a possible word: tests/library/numbering.rs shows that these are the tiles.
         let children = |code: &FCode| {
             let code = *code;
             (0..14).filter_map(move |digit| FCode::parse(root, &format!("{digit:X}{code}")).ok())

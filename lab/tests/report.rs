@@ -20,11 +20,13 @@ fn a_small_report_is_whole() {
     for row in [
         "ours, relaxed",
         "ours, complete level",
+        "ours, seamless set",
         "ours, normalised",
         "ours, smoothed",
         "ours, post-stratified",
         "ours, few-probe",
         "ours, warped level",
+        "ours, Sobol + warp",
         "Owen Sobol + warp",
         "Poisson disk",
         "R2 + inverse CDF",

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use tempfile::TempDir;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 
 fn program() -> Command {
     Command::new(env!("CARGO_BIN_EXE_twelvefold-lab"))
@@ -46,7 +46,7 @@ fn the_same_seed_trains_the_same_bytes_with_any_number_of_threads() {
     let bytes = fs::read(&one).unwrap();
     assert!(bytes == fs::read(&two).unwrap());
     assert!(bytes != fs::read(&other).unwrap());
-    let table = Relaxation::from_bytes(&bytes).unwrap();
+    let table = Displacements::from_bytes(&bytes).unwrap();
     assert!(table.fits(twelvefold::Tables::built_in().rules().digits()));
     assert!(table.provenance.contains("--seed 7"), "{}", table.provenance);
     assert!(table.smooth.slots().iter().any(|slot| slot.longest() > 0.0));

@@ -11,8 +11,8 @@
 
 use alloc::vec::Vec;
 
-use super::BakeError;
 use super::class::Classes;
+use super::error::BakeError;
 use crate::tiling::cyclotomic::Surd;
 use crate::tiling::{Cyclotomic, Rules, Tile, TileType};
 
@@ -32,7 +32,7 @@ pub struct Entry {
 
 /// An entry three levels below the block's tile, where relaxed points read their vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Third {
+pub struct RelaxKey {
     /// How its ancestor one level below the block's tile is turned, in units of 30°.
     pub turn: u8,
     /// Its class over two generations.
@@ -43,7 +43,7 @@ pub struct Third {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block {
     entries: Vec<Entry>,
-    thirds: Vec<Third>,
+    relax_keys: Vec<RelaxKey>,
 }
 
 /// A tile during subdivision, with its rank coefficients and what it remembers of its ancestor one
@@ -64,7 +64,7 @@ impl Block {
             Vec::from([Entry { rank_a: 0, rank_b: 0, born: 0, offset: Cyclotomic::ZERO }]);
         let (tile, classes) = (Tile::root(kind), Classes::root(kind));
         let mut level = Vec::from([Growing { tile, rank_a: 0, rank_b: 0, turn: 0, classes }]);
-        let mut thirds = Vec::new();
+        let mut relax_keys = Vec::new();
         // N_{m+j} = a·N_m − b·N_{m−1}: (a, b) of the level above the current one, and of the current.
         let (mut above, mut here) = ((0i64, -1i64), (1i64, 0i64));
         for born in 1..=depth {
@@ -90,7 +90,7 @@ impl Block {
                     };
                     if born == 3 {
                         let class = classes.over(2) as u16;
-                        thirds.push((rank_a, Third { turn, class }));
+                        relax_keys.push((rank_a, RelaxKey { turn, class }));
                     }
                     next.push(Growing { tile: child, rank_a, rank_b, turn, classes });
                 }
@@ -99,16 +99,16 @@ impl Block {
             (above, here) = (here, (14 * here.0 - above.0, 14 * here.1 - above.1));
         }
         entries.sort_by_key(|entry| entry.rank_a);
-        thirds.sort_by_key(|(rank_a, _)| *rank_a);
-        let thirds = thirds.into_iter().map(|(_, third)| third).collect();
-        Ok(Self { entries, thirds })
+        relax_keys.sort_by_key(|(rank_a, _)| *rank_a);
+        let relax_keys = relax_keys.into_iter().map(|(_, third)| third).collect();
+        Ok(Self { entries, relax_keys })
     }
 
     /// The entries born at most three levels down, as they are there, in the order of their ranks;
     /// none at a depth below 3.
     #[must_use]
-    pub fn thirds(&self) -> &[Third] {
-        &self.thirds
+    pub fn relax_keys(&self) -> &[RelaxKey] {
+        &self.relax_keys
     }
 
     /// The entries in the order of their ranks.
@@ -132,7 +132,7 @@ impl Entry {
     /// the block, for drawing and for approximate work. Ranks decide by A and B.
     #[must_use]
     pub fn threshold(&self, depth: u8) -> f32 {
-        let delta = 7.0 + 4.0 * crate::tiling::cyclotomic::SQRT_3;
+        let delta = 7.0 + 4.0 * crate::tiling::numbers::SQRT_3;
         let in_block_levels = f64::from(self.rank_a) - f64::from(self.rank_b) / delta;
         (0..depth).fold(in_block_levels, |t, _| t / delta) as f32
     }

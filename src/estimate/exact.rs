@@ -7,10 +7,11 @@ use glam::DVec2;
 
 use super::Weighted;
 use super::order::{Buckets, Candidate};
+use crate::emit::Sample;
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
-use crate::points::Sample;
-use crate::sampling::{Amount, Limits, Sampling, SamplingError};
+use crate::sampling::{Amount, Limits, Sampling};
 
 /// Why there are no n points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,11 @@ pub enum ExactError {
         /// The number found at the greatest density.
         found: usize,
     },
+    /// The memory for so many points is not to be had.
+    Memory {
+        /// How much they need.
+        bytes: usize,
+    },
 }
 
 impl fmt::Display for ExactError {
@@ -35,6 +41,7 @@ impl fmt::Display for ExactError {
             Self::TooFew { asked, found } => {
                 write!(f, "the importance has room for {found} points, not {asked}")
             }
+            Self::Memory { bytes } => write!(f, "so many points need {bytes} bytes of memory"),
         }
     }
 }
@@ -62,8 +69,8 @@ impl From<SamplingError> for ExactError {
 /// times at 16,384, up to 3 times at 262,144. Some 90 bytes a point of memory, 40 of them the result.
 ///
 /// # Errors
-/// [`ExactError`]: all that [`Sampling::with_limits`] and its walk report, and [`ExactError::TooFew`].
-/// `n` = 0 gives no points and no error.
+/// [`ExactError`]: all that [`Sampling::within`] and its walk report, and [`ExactError::TooFew`]
+/// and [`ExactError::Memory`]. `n` = 0 gives no points and no error.
 pub fn exactly<I: Importance>(
     placement: &Placement<'_>,
     importance: &I,
@@ -78,9 +85,14 @@ pub fn exactly<I: Importance>(
         let limit = limits.points;
         return Err(SamplingError::TooManyPoints { expected: wanted, limit }.into());
     }
+    let bytes = n.saturating_mul(size_of::<Weighted>() + size_of::<Candidate>());
+    let memory = |_| ExactError::Memory { bytes };
+    let mut points = Vec::new();
+    // Before the walk, so that it is not walked for nothing.
+    points.try_reserve_exact(n).map_err(memory)?;
     let domain = placement.domain();
     let integral = importance.integral(&domain);
-    let bound = importance.upper_bound(&domain.region());
+    let bound = importance.upper_bound(&domain.disc());
     if bound == 0.0 || integral == Some(0.0) {
         return Err(ExactError::TooFew { asked: n, found: 0 });
     }
@@ -92,41 +104,39 @@ pub fn exactly<I: Importance>(
     let walk_limits = Limits { points: u64::MAX, ..limits };
     let mut greatest: Option<f64> = None;
     loop {
-        let sampling = match Sampling::with_limits(
-            placement,
-            importance,
-            Amount::Density(density),
-            walk_limits,
-        ) {
-            Ok(sampling) => sampling,
-            // The deepest level caps the density: try exactly that, once.
-            Err(SamplingError::TooDense { near }) if greatest.is_none() => {
-                density = placement.greatest_threshold() / (placement.ranks_per_density() * bound)
-                    * (1.0 - 1e-12);
-                greatest = Some(density);
-                if !(density > 0.0 && density.is_finite()) {
-                    return Err(SamplingError::TooDense { near }.into());
+        let sampling =
+            match Sampling::within(placement, importance, Amount::Density(density), walk_limits) {
+                Ok(sampling) => sampling,
+                // The deepest level caps the density: try exactly that, once.
+                Err(SamplingError::TooDense { near }) if greatest.is_none() => {
+                    density = placement.greatest_threshold()
+                        / (placement.ranks_per_density() * bound)
+                        * (1.0 - 1e-12);
+                    greatest = Some(density);
+                    if !(density > 0.0 && density.is_finite()) {
+                        return Err(SamplingError::TooDense { near }.into());
+                    }
+                    continue;
                 }
-                continue;
-            }
-            Err(error) => return Err(error.into()),
-        };
-        let candidates = candidates(&sampling, n, limits)?;
+                Err(error) => return Err(error.into()),
+            };
+        let candidates = candidates(&sampling, n, limits, bytes)?;
         let found = candidates.len();
         if found > n || (found == n && greatest.is_some()) {
             // Where no integral is known: the key of the first point that is left out.
             let mut next = placement.greatest_threshold() / bound;
-            let mut points = Vec::with_capacity(n);
             let per_value = integral.map(|integral| wanted / integral);
-            candidates.in_order(|candidate| {
-                let more = points.len() < n;
-                if more {
-                    points.push(weighted(candidate, per_value.unwrap_or(1.0)));
-                } else {
-                    next = candidate.key;
-                }
-                more
-            });
+            candidates
+                .in_order(|candidate| {
+                    let more = points.len() < n;
+                    if more {
+                        points.push(weighted(candidate, per_value.unwrap_or(1.0)));
+                    } else {
+                        next = candidate.key;
+                    }
+                    more
+                })
+                .map_err(memory)?;
             if per_value.is_none() {
                 let per_value = next / placement.ranks_per_density();
                 for point in &mut points {
@@ -146,24 +156,27 @@ pub fn exactly<I: Importance>(
     }
 }
 
-/// All points of the sampling, about `n`, with their keys.
+/// All points of the sampling, about `n`, with their keys. `bytes`: what to say if there is no room.
 fn candidates<I: Importance>(
     sampling: &Sampling<'_, I>,
     n: usize,
     limits: Limits,
-) -> Result<Buckets, SamplingError> {
+    bytes: usize,
+) -> Result<Buckets, ExactError> {
+    let memory = |_| ExactError::Memory { bytes };
     let scale = sampling.scale();
-    let mut candidates = Buckets::new(n, scale.magnification());
+    let mut candidates = Buckets::new(n, scale.magnification()).map_err(memory)?;
     let most = 2 * limits.points.saturating_add(64);
-    sampling.points::<DVec2>()?.for_each_sample(|Sample { position, rank }| {
+    sampling.points::<DVec2>()?.for_each_sample::<ExactError>(|Sample { position, rank }| {
         if candidates.len() as u64 > most {
             let expected = candidates.len() as f64;
-            return Err(SamplingError::TooManyPoints { expected, limit: limits.points });
+            return Err(SamplingError::TooManyPoints { expected, limit: limits.points }.into());
         }
         let value = sampling.importance().value(position);
         // Where rounding carried the position over an edge of the importance, no density is finite.
         if value > 0.0 {
-            candidates.push(Candidate { key: scale.shifted(rank) / value, position, rank, value });
+            let key = scale.shifted(rank) / value;
+            candidates.push(Candidate { key, position, rank, value }).map_err(memory)?;
         }
         Ok(())
     })?;

@@ -35,11 +35,14 @@
 
 mod exact;
 mod order;
+mod seamless;
 mod stratified;
+pub(crate) mod sums;
 mod warp;
 mod weighted;
 
 pub use exact::{ExactError, exactly};
+pub use seamless::SeamlessSet;
 pub use stratified::post_stratify;
 pub use warp::Warp;
 pub use weighted::{Weighted, WeightedPoints, Weighting, normalise};

@@ -1,6 +1,7 @@
 //! Sorting in the time of a few passes: keys of a sampling are spread evenly below its magnification,
 //! because its ranks are.
 
+use alloc::collections::TryReserveError;
 use alloc::vec::Vec;
 use core::cmp::Ordering;
 
@@ -40,13 +41,17 @@ type Place = (f64, u32);
 impl Buckets {
     /// For about `expected` candidates with keys from 0 to about `greatest`. Others are sorted as
     /// well, only not as fast.
-    pub(super) fn new(expected: usize, greatest: f64) -> Self {
+    pub(super) fn new(expected: usize, greatest: f64) -> Result<Self, TryReserveError> {
         let count = (expected / COARSE).clamp(1, MOST_BUCKETS);
         let per_key = count as f64 / greatest;
         // Buckets differ little. What is never filled is never touched, but may never be free either.
         let room = (expected.min(MOST_ROOM) / count * 17 / 16) + 64;
-        let buckets = (0..count).map(|_| Vec::with_capacity(room)).collect();
-        Self { buckets, per_key, len: 0 }
+        let mut buckets = Vec::new();
+        buckets.resize_with(count, Vec::new);
+        for bucket in &mut buckets {
+            bucket.try_reserve_exact(room)?;
+        }
+        Ok(Self { buckets, per_key, len: 0 })
     }
 
     /// The number of candidates.
@@ -55,22 +60,31 @@ impl Buckets {
     }
 
     #[inline]
-    pub(super) fn push(&mut self, candidate: Candidate) {
+    pub(super) fn push(&mut self, candidate: Candidate) -> Result<(), TryReserveError> {
         // Multiplication by a number and truncation keep the order; NaN is 0.
         let bucket = ((candidate.key * self.per_key) as u32 as usize).min(self.buckets.len() - 1);
-        self.buckets[bucket].push(candidate);
+        let bucket = &mut self.buckets[bucket];
+        if bucket.len() == bucket.capacity() {
+            bucket.try_reserve(1)?;
+        }
+        bucket.push(candidate);
         self.len += 1;
+        Ok(())
     }
 
     /// Calls `take` for each candidate, by key and then by rank, until it returns `false`.
-    pub(super) fn in_order(self, mut take: impl FnMut(&Candidate) -> bool) {
+    pub(super) fn in_order(
+        self,
+        mut take: impl FnMut(&Candidate) -> bool,
+    ) -> Result<(), TryReserveError> {
         let (mut places, mut starts) = (Vec::new(), Vec::new());
         for (i, bucket) in self.buckets.into_iter().enumerate() {
-            sort(&bucket, i as f64, self.per_key, &mut places, &mut starts);
+            sort(&bucket, i as f64, self.per_key, &mut places, &mut starts)?;
             if !places.iter().all(|(_, at)| take(&bucket[*at as usize])) {
-                return;
+                break;
             }
         }
+        Ok(())
     }
 }
 
@@ -83,13 +97,14 @@ fn sort(
     per_key: f64,
     places: &mut Vec<Place>,
     starts: &mut Vec<u32>,
-) {
+) -> Result<(), TryReserveError> {
     let count = bucket.len();
     let fine = |key: f64| {
         // Truncation takes what is below the first to 0.
         (((key * per_key - first) * count as f64) as usize).min(count - 1)
     };
     starts.clear();
+    starts.try_reserve(count + 1)?;
     starts.resize(count + 1, 0);
     for candidate in bucket {
         starts[fine(candidate.key) + 1] += 1;
@@ -98,6 +113,7 @@ fn sort(
         starts[i + 1] += starts[i];
     }
     places.clear();
+    places.try_reserve(count)?;
     places.resize(count, (0.0, 0));
     for (index, candidate) in (0..).zip(bucket) {
         let start = &mut starts[fine(candidate.key)];
@@ -113,6 +129,7 @@ fn sort(
         }
         start = end;
     }
+    Ok(())
 }
 
 fn order(bucket: &[Candidate], a: &Place, b: &Place) -> Ordering {
@@ -123,22 +140,24 @@ fn order(bucket: &[Candidate], a: &Place, b: &Place) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::seed::SplitMix64;
+    use crate::random::SplitMix64;
     use proptest::prelude::*;
 
     fn check(keys: Vec<f64>, expected: usize, greatest: f64) {
-        let mut buckets = Buckets::new(expected, greatest);
+        let mut buckets = Buckets::new(expected, greatest).unwrap();
         let mut plain: Vec<(f64, u64)> = (0..).zip(keys).map(|(rank, key)| (key, rank)).collect();
         // Ranks against the order of arrival.
         for (key, rank) in plain.iter().rev().copied() {
-            buckets.push(Candidate { key, position: DVec2::ZERO, rank, value: 1.0 });
+            buckets.push(Candidate { key, position: DVec2::ZERO, rank, value: 1.0 }).unwrap();
         }
         assert_eq!(buckets.len(), plain.len());
         let mut sorted = Vec::new();
-        buckets.in_order(|candidate| {
-            sorted.push((candidate.key, candidate.rank));
-            true
-        });
+        buckets
+            .in_order(|candidate| {
+                sorted.push((candidate.key, candidate.rank));
+                true
+            })
+            .unwrap();
         plain.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         assert_eq!(sorted, plain);
     }
@@ -153,15 +172,17 @@ mod tests {
 
     #[test]
     fn it_stops_when_told() {
-        let mut buckets = Buckets::new(3, 1.0);
+        let mut buckets = Buckets::new(3, 1.0).unwrap();
         for (rank, key) in (0..).zip([0.9, 0.1, 0.5]) {
-            buckets.push(Candidate { key, position: DVec2::ZERO, rank, value: 1.0 });
+            buckets.push(Candidate { key, position: DVec2::ZERO, rank, value: 1.0 }).unwrap();
         }
         let mut taken = Vec::new();
-        buckets.in_order(|candidate| {
-            taken.push(candidate.rank);
-            taken.len() < 2
-        });
+        buckets
+            .in_order(|candidate| {
+                taken.push(candidate.rank);
+                taken.len() < 2
+            })
+            .unwrap();
         assert_eq!(taken, [1, 2]);
     }
 

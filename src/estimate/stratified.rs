@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use super::Weighted;
+use super::sums::{Cell, SumPyramid};
 use crate::importance::ImageMap;
-use crate::importance::sums::{Cell, SumPyramid};
 
 /// Replaces the weights of points that follow `map` by post-stratified ones.
 ///
@@ -20,12 +20,12 @@ use crate::importance::sums::{Cell, SumPyramid};
 /// For more than one set of a map, [`Warp::post_stratify`](super::Warp::post_stratify) sums the pixels
 /// once.
 pub fn post_stratify(points: &mut [Weighted], map: &ImageMap, per_cell: f64) {
-    weigh(points, map, &SumPyramid::new(map), per_cell);
+    weigh(points, map, &SumPyramid::new(map.pixels(), map.size()), per_cell);
 }
 
 /// The same with the map's sums at hand.
 pub(super) fn weigh(points: &mut [Weighted], map: &ImageMap, sums: &SumPyramid, per_cell: f64) {
-    let sum = sums.sum(sums.top());
+    let sum = sums.total();
     let Some(first) = points.first() else { return };
     let (x, y) = map.texel(first.position);
     let value = f64::from(map.pixels()[y * map.size().0 + x]);
@@ -46,6 +46,7 @@ pub(super) fn weigh(points: &mut [Weighted], map: &ImageMap, sums: &SumPyramid, 
         .collect();
     let strata = Strata {
         sums,
+        pixels: map.pixels(),
         expected_per_sum,
         split_from: 4.0 * if per_cell >= 1.0 { per_cell } else { 1.0 },
     };
@@ -62,18 +63,23 @@ struct Member {
 
 struct Strata<'a> {
     sums: &'a SumPyramid,
+    pixels: &'a [f32],
     expected_per_sum: f64,
     /// A cell that expects as many is divided.
     split_from: f64,
 }
 
 impl Strata<'_> {
+    fn sum(&self, cell: Cell) -> f64 {
+        self.sums.sum(self.pixels, cell)
+    }
+
     /// Distributes `expected` points over the members of a cell. At most 32 cells deep.
     fn weigh(&self, cell: Cell, expected: f64, members: &mut [Member], points: &mut [Weighted]) {
         if members.is_empty() {
             return;
         }
-        if cell.level == 0 || self.sums.sum(cell) * self.expected_per_sum < self.split_from {
+        if cell.level == 0 || self.sum(cell) * self.expected_per_sum < self.split_from {
             let factor = expected / members.len() as f64;
             for member in members {
                 let point = &mut points[member.index];
@@ -96,12 +102,12 @@ impl Strata<'_> {
         let mut occupied = 0.0;
         for (quarter, part) in quarters.iter().zip(&parts) {
             if !part.is_empty() {
-                occupied += self.sums.sum(*quarter);
+                occupied += self.sum(*quarter);
             }
         }
         if occupied > 0.0 {
             for (quarter, part) in quarters.into_iter().zip(parts) {
-                self.weigh(quarter, expected * (self.sums.sum(quarter) / occupied), part, points);
+                self.weigh(quarter, expected * (self.sum(quarter) / occupied), part, points);
             }
         }
     }

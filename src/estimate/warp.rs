@@ -4,12 +4,11 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::exact::{ExactError, exactly};
+use super::exact::ExactError;
+use super::seamless::SeamlessSet;
+use super::sums::SumPyramid;
 use super::weighted::Weighted;
-use crate::domain::Domain;
-use crate::importance::sums::SumPyramid;
-use crate::importance::{Constant, ImageMap};
-use crate::placement::Placement;
+use crate::importance::ImageMap;
 use crate::sampling::Limits;
 
 /// The hierarchical warp from the unit square to a map's domain that turns the uniform density into
@@ -18,8 +17,8 @@ use crate::sampling::Limits;
 /// From the whole map down to a pixel, the square is divided into upper and lower half in the ratio of
 /// their sums, then left and right, and each part is stretched to a half square. Neighbours stay
 /// neighbours but for the stretching, so that a set of low discrepancy keeps most of its merit: the
-/// least error per sample known for environment maps, with a complete level of the tiling as well as
-/// with Owen-scrambled Sobol points. Pixels of importance 0 get no point.
+/// least error per sample known for environment maps, with a seamless level of the tiling as well as
+/// with Owen-scrambled [Sobol](crate::light::Sobol) points. Pixels of importance 0 get no point.
 ///
 /// O(pixels) to make; 3 to 4 numbers read a level and point.
 #[derive(Clone, Debug)]
@@ -28,15 +27,12 @@ pub struct Warp<'m> {
     sums: SumPyramid,
 }
 
-/// The greatest number below 1.
-const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
-
 impl<'m> Warp<'m> {
     /// The warp to a map's density; `None` if the map is 0 everywhere.
     #[must_use]
     pub fn new(map: &'m ImageMap) -> Option<Self> {
-        let sums = SumPyramid::new(map);
-        let sum = sums.sum(sums.top());
+        let sums = SumPyramid::new(map.pixels(), map.size());
+        let sum = sums.total();
         (sum > 0.0 && sum.is_finite()).then_some(Self { map, sums })
     }
 
@@ -69,21 +65,7 @@ impl<'m> Warp<'m> {
 
     /// The pixel to which a point goes, and where in it.
     fn pixel(&self, at: DVec2) -> (usize, usize, DVec2) {
-        let inside = |c: f64| if c > 0.0 { c.min(BELOW_ONE) } else { 0.0 };
-        let mut at = DVec2::new(inside(at.x), inside(at.y));
-        let mut cell = self.sums.top();
-        while cell.level > 0 {
-            let quarters = cell.quarters();
-            let [a, b, c, d] = quarters.map(|quarter| self.sums.sum(quarter));
-            // A part without importance has exactly the fraction 0 or 1, which no coordinate picks.
-            let upper = (a + b) / ((a + b) + (c + d));
-            let (row, y) = split(at.y, upper);
-            let [left, right] = if row == 0 { [a, b] } else { [c, d] };
-            let (column, x) = split(at.x, left / (left + right));
-            at = DVec2::new(x, y);
-            cell = quarters[2 * row + column];
-        }
-        (cell.x, cell.y, at)
+        self.sums.find(self.map.pixels(), self.sums.top(), at)
     }
 
     /// The weighted point to which a point of [0, 1)² goes, as one of `n`. The estimate from n points
@@ -103,31 +85,15 @@ impl<'m> Warp<'m> {
         super::stratified::weigh(points, self.map, &self.sums, per_cell);
     }
 
-    /// Exactly `n` points that follow the map: a complete level of the tiling, warped. Ordered by rank;
-    /// ranks are those of the uniform set.
+    /// Exactly `n` points that follow the map: a [`SeamlessSet`] of the tiling, warped, in no useful
+    /// order; ranks are the order. Best where n is a multiple of 4.
     ///
-    /// A level has n points on average; it is cut or topped up by rank, which costs some 6 % more error
-    /// than its own number of points would. The rest of the error is the border's: a level at a random
-    /// angle meets the square's edges irregularly, where scrambled Sobol points have as many in every
-    /// strip along them. [`post_stratify`](Self::post_stratify) removes a part of it.
+    /// To make many sets of one number, keep the set and warp its [points](SeamlessSet::points).
     ///
     /// # Errors
-    /// Those of [`exactly`], with `limits`.
+    /// Those of [`SeamlessSet::new`], with `limits`.
     pub fn level(&self, n: usize, seed: u64, limits: Limits) -> Result<Vec<Weighted>, ExactError> {
-        if n == 0 {
-            return Ok(Vec::new());
-        }
-        let placement = Placement::aligned(Domain::unit(), seed, n as f64)?;
-        let uniform = exactly(&placement, &Constant::ONE, n, limits)?;
-        Ok(uniform.iter().map(|point| self.weighted(point.position, n, point.rank)).collect())
-    }
-}
-
-/// Which part of [0, `fraction`) ∪ [`fraction`, 1) holds c, and where in it, in [0, 1).
-fn split(c: f64, fraction: f64) -> (usize, f64) {
-    if c < fraction {
-        (0, (c / fraction).min(BELOW_ONE))
-    } else {
-        (1, ((c - fraction) / (1.0 - fraction)).min(BELOW_ONE))
+        let set = SeamlessSet::new(n, limits)?;
+        Ok((0..).zip(set.points(seed)).map(|(rank, at)| self.weighted(at, n, rank)).collect())
     }
 }

@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
+use crate::emit::Points;
+use crate::error::SamplingError;
 use crate::importance::Importance;
-use crate::points::Points;
-use crate::sampling::{Sampling, SamplingError};
+use crate::sampling::Sampling;
 
 /// How points are weighted. See the table of the [module](super).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -46,7 +47,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// use glam::DVec2;
     /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling, estimate::Weighting};
     ///
-    /// let placement = Placement::new(Domain::unit(), 1);
+    /// let placement = Placement::new(Domain::UNIT, 1);
     /// let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(4096.0))?;
     /// let mut integral = 0.0;
     /// for point in sampling.weighted(Weighting::Smoothed)? {
@@ -61,7 +62,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// [`SamplingError::Relaxed`] for [`relaxed`](Self::relaxed) points, which are accepted in one place
     /// and lie in another; [`SamplingError::Precision`] if no `f64` lies in the domain.
     pub fn weighted(&self, weighting: Weighting) -> Result<WeightedPoints<'a, I>, SamplingError> {
-        if self.is_relaxed() {
+        if self.displacements().is_some() {
             return Err(SamplingError::Relaxed);
         }
         Ok(WeightedPoints { sampling: *self, points: self.points()?, weighting })
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn relaxed_points_have_no_weights() {
-        let placement = Placement::new(Domain::unit(), 3);
+        let placement = Placement::new(Domain::UNIT, 3);
         let fixed = Sampling::new(&placement, &Constant::ONE, Amount::Points(300.0)).unwrap();
         let relaxed = fixed.relaxed().unwrap();
         for weighting in [Weighting::Density, Weighting::Smoothed] {
@@ -130,7 +131,7 @@ mod tests {
             assert!(fixed.weighted(weighting).is_ok());
         }
         // However it is cut.
-        assert!(relaxed.clipped(Domain::unit()).weighted(Weighting::Density).is_err());
-        assert!(relaxed.shard(0, 2).unwrap().weighted(Weighting::Density).is_err());
+        assert!(relaxed.clipped(Domain::UNIT).weighted(Weighting::Density).is_err());
+        assert!(relaxed.clipped(Domain::UNIT).weighted(Weighting::Density).is_err());
     }
 }

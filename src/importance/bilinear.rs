@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::interpolation::{Grid, RUN};
+use super::raster::{Grid, RUN};
 use super::{ImageMap, Importance};
-use crate::domain::{Domain, Region};
-use crate::walk::scalar::Scalar;
+use crate::domain::{Disc, Domain};
+use crate::position::Scalar;
 
 /// An [`ImageMap`] read bilinearly: each pixel's value holds at its centre, and between four centres the
 /// importance is interpolated. Beyond the outermost centres the border pixels continue.
@@ -32,9 +32,9 @@ impl BilinearMap {
 
     /// The region and half a pixel around it: a little more, for the rounding of `value`'s own
     /// coordinates.
-    fn widened(&self, region: &Region) -> Region {
+    fn widened(&self, region: &Disc) -> Disc {
         let reach = self.half_texel().max_element() * (1.0 + 1e-9);
-        Region { radius: region.radius + reach, ..*region }
+        Disc { radius: region.radius + reach, ..*region }
     }
 
     /// Half a pixel, in units.
@@ -74,12 +74,12 @@ impl Importance for BilinearMap {
 
     /// The largest pixel whose centre is less than a pixel from the region: interpolation never
     /// exceeds the pixels it lies between.
-    fn upper_bound(&self, region: &Region) -> f64 {
+    fn upper_bound(&self, region: &Disc) -> f64 {
         self.map.upper_bound(&self.widened(region))
     }
 
     /// The smallest such pixel.
-    fn lower_bound(&self, region: &Region) -> f64 {
+    fn lower_bound(&self, region: &Disc) -> f64 {
         self.map.lower_bound(&self.widened(region))
     }
 
@@ -93,7 +93,7 @@ impl Importance for BilinearMap {
 mod tests {
     use super::*;
     use crate::InvalidPixels;
-    use crate::seed::SplitMix64;
+    use crate::random::SplitMix64;
     use alloc::vec::Vec;
     use proptest::prelude::*;
 
@@ -122,7 +122,7 @@ mod tests {
             let domain =
                 Domain::new(DVec2::new(-3.0, 1e4), DVec2::new(5.0, 0.7)).unwrap();
             let map = BilinearMap::new(random(width, height, seed).map.over(domain));
-            let region = Region { centre: domain.min() + domain.size() * DVec2::new(x, y), radius };
+            let region = Disc { centre: domain.min() + domain.size() * DVec2::new(x, y), radius };
             let bounds = map.lower_bound(&region)..=map.upper_bound(&region);
             let mut random = SplitMix64::new(seed);
             for _ in 0..200 {

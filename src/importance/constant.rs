@@ -5,7 +5,7 @@ use core::fmt;
 use glam::DVec2;
 
 use super::Importance;
-use crate::domain::{Domain, Region};
+use crate::domain::{Disc, Domain};
 
 /// A constant importance, finite and not negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Importance for Constant {
         self.0
     }
 
-    fn upper_bound(&self, _region: &Region) -> f64 {
+    fn upper_bound(&self, _region: &Disc) -> f64 {
         self.0
     }
 
@@ -56,11 +56,11 @@ impl Importance for Constant {
         Some(self.0 * domain.area())
     }
 
-    fn lower_bound(&self, _region: &Region) -> f64 {
+    fn lower_bound(&self, _region: &Disc) -> f64 {
         self.0
     }
 
-    fn is_constant(&self, _region: &Region) -> bool {
+    fn is_constant(&self, _region: &Disc) -> bool {
         true
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Importance;
-use crate::domain::{Domain, Region};
+use crate::domain::{Disc, Domain};
 
 /// An importance given by two closures: its value at a point, and an upper bound over a region.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub struct Function<V, B> {
     integral: Option<f64>,
 }
 
-impl<V: Fn(DVec2) -> f64, B: Fn(&Region) -> f64> Function<V, B> {
+impl<V: Fn(DVec2) -> f64, B: Fn(&Disc) -> f64> Function<V, B> {
     /// `value(p)` is the importance at p, in the caller's units; `bound(r)` must not be exceeded by it
     /// anywhere in r. A bound that ignores its region (`|_| 1.0`) is allowed and slow where the
     /// function is far below it.
@@ -28,12 +28,12 @@ impl<V: Fn(DVec2) -> f64, B: Fn(&Region) -> f64> Function<V, B> {
     }
 }
 
-impl<V: Fn(DVec2) -> f64, B: Fn(&Region) -> f64> Importance for Function<V, B> {
+impl<V: Fn(DVec2) -> f64, B: Fn(&Disc) -> f64> Importance for Function<V, B> {
     fn value(&self, at: DVec2) -> f64 {
         (self.value)(at)
     }
 
-    fn upper_bound(&self, region: &Region) -> f64 {
+    fn upper_bound(&self, region: &Disc) -> f64 {
         (self.bound)(region)
     }
 

@@ -6,29 +6,31 @@
 
 mod bilinear;
 mod constant;
+mod environment;
+pub(crate) mod frame;
 mod function;
-mod interpolation;
-mod lookup;
-mod map;
+mod image;
 mod pixels;
+mod planes;
+pub(crate) mod policy;
 mod probed;
-mod pyramid;
+mod raster;
 mod stipple;
-pub(crate) mod sums;
-mod view;
 
 pub use bilinear::BilinearMap;
 pub use constant::{Constant, ConstantError};
+pub use environment::{EnvironmentError, EnvironmentMap, EnvironmentSample};
+pub(crate) use environment::{importance_of, luminance};
 pub use function::Function;
-pub use map::{ImageMap, InvalidPixels, MapError};
+pub use image::ImageMap;
+pub use pixels::{InvalidPixels, MapError, PixelData, PixelView};
 pub use probed::Probed;
 pub use stipple::StippleMap;
-pub use view::{PixelData, PixelView};
 
 use glam::DVec2;
 
-use crate::domain::{Domain, Region};
-use crate::walk::scalar::Scalar;
+use crate::domain::{Disc, Domain};
+use crate::position::Scalar;
 
 /// A density of points to follow, known at each point and bounded over each disc.
 ///
@@ -41,12 +43,12 @@ pub trait Importance {
 
     /// A number that [`value`](Self::value) does not exceed anywhere in the part of `region` that lies
     /// in the domain. The closer, the less work; it may not be below.
-    fn upper_bound(&self, region: &Region) -> f64;
+    fn upper_bound(&self, region: &Disc) -> f64;
 
     /// A number that [`value`](Self::value) is not below anywhere in the part of `region` that lies in the
     /// domain; as much of a promise as the upper bound, but not checked. Candidates that it admits need
     /// no look at the importance. 0, not negative, where nothing better is known.
-    fn lower_bound(&self, region: &Region) -> f64 {
+    fn lower_bound(&self, region: &Disc) -> f64 {
         let _ = region;
         0.0
     }
@@ -68,7 +70,7 @@ pub trait Importance {
     #[inline]
     fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
         for ((bound, x), y) in bounds.iter_mut().zip(x).zip(y) {
-            *bound = self.upper_bound(&Region { centre: origin + DVec2::new(*x, *y), radius });
+            *bound = self.upper_bound(&Disc { centre: origin + DVec2::new(*x, *y), radius });
         }
     }
 
@@ -104,26 +106,33 @@ pub trait Importance {
         }
     }
 
-    /// Relaxed points only: where a point goes that is accepted at `centre` down to importance
-    /// `needed` and that relaxation would move to `moved`. Importance with hard edges keeps points on
-    /// their side. Not farther from `moved`, or from `centre`, than
-    /// [`longest_settling`](Self::longest_settling), unless nearer to `centre` than `moved` is.
-    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        let _ = (centre, needed);
-        moved
+    /// Relaxed points only: where a point ends up. Its tile's centre is `centre`, its rank is accepted
+    /// where the importance is above `needed`, and relaxation would move it to `moved`; both are places
+    /// of the domain. Never where the
+    /// importance is 0: by default, back towards the centre until it is not. Importance with hard edges
+    /// keeps points on their side. Not farther from `moved` than
+    /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `centre`.
+    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        let _ = needed;
+        retreat(centre, moved, |at| self.value(at) > 0.0)
     }
 
-    /// 1 for each point `(x[i], y[i])` that [`settle`](Self::settle) would leave there, moved, down to
-    /// importance `needed[i]`; 0 for those about which it is asked. Worth overriding where most stay.
+    /// Which moved points may stay: 1 for each place `(x[i], y[i])` at which
+    /// [`constrain`](Self::constrain) is sure to leave a point of importance `needed[i]`, and 0 for each
+    /// about which it has to be asked. Worth overriding where many at once
+    /// are cheaper.
     #[inline]
-    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
-        let _ = (x, y, needed);
-        stays.fill(0);
+    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
+        let _ = needed;
+        for ((x, y), unconstrained) in x.iter().zip(y).zip(unconstrained) {
+            *unconstrained = u8::from(self.value(DVec2::new(*x, *y)) > 0.0);
+        }
     }
 
-    /// The farthest that [`settle`](Self::settle) takes a point away from where relaxation moved it, in
-    /// units. 0: it is not asked at all.
-    fn longest_settling(&self) -> f64 {
+    /// The farthest that [`constrain`](Self::constrain) takes a point away from where relaxation moved it, in
+    /// units, other than towards its centre. 0: it is asked only where
+    /// [`lower_bound`](Self::lower_bound) is 0.
+    fn longest_constraint(&self) -> f64 {
         0.0
     }
 
@@ -135,11 +144,24 @@ pub trait Importance {
 
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
     /// test of their own. Where it does, [`local`](Self::local) equals it too, there is no
-    /// [`detail`](Self::detail), and nothing [settles](Self::settle).
-    fn is_constant(&self, region: &Region) -> bool {
+    /// [`detail`](Self::detail), and nothing [constrains](Self::constrain).
+    fn is_constant(&self, region: &Disc) -> bool {
         let _ = region;
         false
     }
+}
+
+/// Parts of the way from its centre that a point goes that may not go all of it.
+const WAYS: [f64; 3] = [0.75, 0.5, 0.25];
+
+/// The farthest of some places on the way from `centre` to `moved` where a point may lie; the centre if
+/// there is no other.
+fn retreat(centre: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
+    if may_lie(moved) {
+        return moved;
+    }
+    let places = WAYS.iter().map(|way| centre + (moved - centre) * *way);
+    places.into_iter().find(|at| may_lie(*at)).unwrap_or(centre)
 }
 
 /// What a reference does: everything that it refers to.
@@ -149,11 +171,11 @@ macro_rules! forward {
             (**self).value(at)
         }
 
-        fn upper_bound(&self, region: &Region) -> f64 {
+        fn upper_bound(&self, region: &Disc) -> f64 {
             (**self).upper_bound(region)
         }
 
-        fn lower_bound(&self, region: &Region) -> f64 {
+        fn lower_bound(&self, region: &Disc) -> f64 {
             (**self).lower_bound(region)
         }
 
@@ -189,25 +211,25 @@ macro_rules! forward {
         }
 
         #[inline]
-        fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-            (**self).settle(centre, moved, needed)
+        fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+            (**self).constrain(centre, moved, needed)
         }
 
         #[inline(always)]
-        fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
-            (**self).stays(x, y, needed, stays);
+        fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
+            (**self).unconstrained(x, y, needed, unconstrained);
         }
 
         #[inline]
-        fn longest_settling(&self) -> f64 {
-            (**self).longest_settling()
+        fn longest_constraint(&self) -> f64 {
+            (**self).longest_constraint()
         }
 
         fn bounds_hold(&self) -> bool {
             (**self).bounds_hold()
         }
 
-        fn is_constant(&self, region: &Region) -> bool {
+        fn is_constant(&self, region: &Disc) -> bool {
             (**self).is_constant(region)
         }
     };

@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::Importance;
-use crate::domain::{Domain, Region};
-use crate::walk::scalar::Scalar;
+use crate::domain::{Disc, Domain};
+use crate::position::Scalar;
 
 /// An importance whose upper bounds are not proven but probed: the largest value at seven points of a
 /// region, its centre and six around it.
@@ -45,7 +45,7 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.value(at)
     }
 
-    fn upper_bound(&self, region: &Region) -> f64 {
+    fn upper_bound(&self, region: &Disc) -> f64 {
         let (min, max) = (self.domain.min(), self.domain.max());
         let value = |probe: &DVec2| {
             self.importance.value((region.centre + region.radius * *probe).max(min).min(max))
@@ -75,17 +75,17 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.surroundings(x, y, local, detail);
     }
 
-    fn settle(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        self.importance.settle(centre, moved, needed)
+    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        self.importance.constrain(centre, moved, needed)
     }
 
     #[inline(always)]
-    fn stays(&self, x: &[f64], y: &[f64], needed: &[f64], stays: &mut [u8]) {
-        self.importance.stays(x, y, needed, stays);
+    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
+        self.importance.unconstrained(x, y, needed, unconstrained);
     }
 
-    fn longest_settling(&self) -> f64 {
-        self.importance.longest_settling()
+    fn longest_constraint(&self) -> f64 {
+        self.importance.longest_constraint()
     }
 
     fn bounds_hold(&self) -> bool {

@@ -1,25 +1,16 @@
 //! Samplings: a placement, an importance and an amount, checked, ready to emit points.
 
+mod clip;
 mod scale;
 
-use core::fmt;
-use core::ops::ControlFlow;
-
-use glam::DVec2;
-
-use crate::clip::Clip;
-use crate::domain::{Domain, Region};
-use crate::effort::Effort;
+use crate::domain::{Disc, Domain};
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
-use crate::points::{Filled, Points, Sample};
-use crate::relaxed::RelaxationTable;
+use crate::tables::DisplacementTable;
 use crate::tiling::{MAX_LEVEL, TileCounts};
-use crate::walk;
-use crate::walk::either::AnyTraversal;
-use crate::walk::scalar::{Coordinate, Position};
-use crate::walk::share::Share;
 
+pub(crate) use clip::{Clip, ToWorld};
 pub(crate) use scale::RankScale;
 
 /// How many points.
@@ -51,109 +42,6 @@ impl Default for Limits {
     }
 }
 
-/// Why points could not be made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum SamplingError {
-    /// The amount is NaN, infinite or negative.
-    Amount {
-        /// The number.
-        value: f64,
-    },
-    /// A count was asked for, but the importance does not know its integral.
-    UnknownIntegral,
-    /// A count was asked for, but the importance is 0 everywhere, or so close to it that no finite
-    /// density makes up for it.
-    NoImportance,
-    /// More points are expected than [`Limits::points`].
-    TooManyPoints {
-        /// The number expected.
-        expected: f64,
-        /// The limit.
-        limit: u64,
-    },
-    /// The density asked for is past the deepest level whose ranks fit 64 bits.
-    TooDense {
-        /// The centre of the region with that density.
-        near: DVec2,
-    },
-    /// An upper bound is NaN, infinite or negative.
-    InvalidBound {
-        /// The centre of the region asked about.
-        near: DVec2,
-        /// The bound.
-        bound: f64,
-    },
-    /// A value is NaN, negative, or above the bound of a region that holds its point.
-    InvalidValue {
-        /// The point.
-        at: DVec2,
-        /// The value.
-        value: f64,
-        /// The bound.
-        bound: f64,
-    },
-    /// The walk visited more tiles than [`Limits::tiles`].
-    TilesLimit {
-        /// The limit.
-        limit: u64,
-    },
-    /// The placement's tables have no relaxed offsets.
-    NoRelaxation,
-    /// Weights were asked for of relaxed points, which have none: estimates from them would be biased.
-    Relaxed,
-    /// There is no such part.
-    Shard {
-        /// Which part.
-        index: usize,
-        /// Of how many.
-        of: usize,
-    },
-    /// The position type cannot tell the points of the domain apart: it is too far from the origin for
-    /// any number of this precision to lie in it, or its sizes leave the precision's range (for `f32`,
-    /// a diagonal outside of some 10⁻³⁰ … 10³⁷).
-    Precision,
-}
-
-impl fmt::Display for SamplingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Amount { value } => write!(f, "{value} is no amount of points"),
-            Self::UnknownIntegral => f.write_str(
-                "a number of points needs an importance that knows its integral over the domain",
-            ),
-            Self::NoImportance => f.write_str("the importance is zero everywhere, or next to it"),
-            Self::TooManyPoints { expected, limit } => {
-                write!(f, "about {expected:.0} points are expected, the limit is {limit}")
-            }
-            Self::TooDense { near } => write!(
-                f,
-                "the density near ({}, {}) is past the deepest level, {MAX_LEVEL}",
-                near.x, near.y
-            ),
-            Self::InvalidBound { near, bound } => {
-                write!(f, "the upper bound near ({}, {}) is {bound}", near.x, near.y)
-            }
-            Self::InvalidValue { at, value, bound } => write!(
-                f,
-                "the importance at ({}, {}) is {value}, not between 0 and its bound {bound}",
-                at.x, at.y
-            ),
-            Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
-            Self::NoRelaxation => f.write_str("the tables have no relaxed offsets"),
-            Self::Relaxed => f.write_str(
-                "relaxed points have no unbiased weights: use the fixed centres for estimates",
-            ),
-            Self::Shard { index, of } => write!(f, "there is no part {index} (from 0) of {of}"),
-            Self::Precision => {
-                f.write_str("positions of this precision cannot resolve the domain; use DVec2")
-            }
-        }
-    }
-}
-
-impl core::error::Error for SamplingError {}
-
 /// A point set: fixed by tables, placement, importance and amount, and by nothing else.
 ///
 /// A point of rank k (its fixed place in the placement's sequence) is in the set if and only if
@@ -166,9 +54,9 @@ pub struct Sampling<'a, I> {
     scale: RankScale,
     expected: Option<f64>,
     limits: Limits,
-    relaxed: bool,
+    /// By what points are moved, if they are.
+    displacements: Option<&'a DisplacementTable<'a>>,
     clip: Clip,
-    share: Option<Share>,
 }
 
 // Derived, these would ask the importance itself to be `Copy`.
@@ -189,14 +77,14 @@ impl<'a, I: Importance> Sampling<'a, I> {
         importance: &'a I,
         amount: Amount,
     ) -> Result<Self, SamplingError> {
-        Self::with_limits(placement, importance, amount, Limits::default())
+        Self::within(placement, importance, amount, Limits::default())
     }
 
     /// The same within the caller's limits.
     ///
     /// # Errors
     /// [`SamplingError`], before any work: see its variants.
-    pub fn with_limits(
+    pub fn within(
         placement: &'a Placement<'a>,
         importance: &'a I,
         amount: Amount,
@@ -226,11 +114,10 @@ impl<'a, I: Importance> Sampling<'a, I> {
             scale: RankScale::new(density * placement.ranks_per_density(), placement.rank_shift()),
             expected,
             limits,
-            relaxed: false,
+            displacements: None,
             clip: Clip::domain(&domain),
-            share: None,
         };
-        let region = domain.region();
+        let region = domain.disc();
         let bound = importance.upper_bound(&region);
         sampling.rank_limit_of_bound(bound, &region)?;
         let expected = expected.unwrap_or(bound * density * domain.area());
@@ -247,83 +134,47 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
     /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
     /// (by 4 % and more), which is why [`weighted`](Self::weighted) refuses. Not progressive either: a
-    /// point's place depends on the density around it. Ranks stay what they are. Where fewer than some four points are expected in a whole domain,
-    /// points stay at their centres.
+    /// point's place depends on the density around it. Ranks stay what they are. Where fewer than some four
+    /// points are expected in a whole domain, points stay at their centers.
     ///
     /// # Errors
-    /// [`SamplingError::NoRelaxation`] if the placement's tables have no relaxed offsets.
+    /// [`SamplingError::NoDisplacements`] if the placement's tables have no relaxed offsets.
     pub fn relaxed(self) -> Result<Self, SamplingError> {
-        match self.placement.tables().relaxation() {
-            Some(_) => Ok(Self { relaxed: true, ..self }),
-            None => Err(SamplingError::NoRelaxation),
+        match self.placement.tables().displacements() {
+            Some(displacements) => Ok(Self { displacements: Some(displacements), ..self }),
+            None => Err(SamplingError::NoDisplacements),
         }
     }
 
-    /// Whether points are moved from their tiles' centres.
-    pub(crate) fn is_relaxed(&self) -> bool {
-        self.relaxed
-    }
-
-    /// The offsets by which points are moved, in relaxed mode.
-    pub(crate) fn relaxation(&self) -> Option<&'a RelaxationTable<'a>> {
-        if self.relaxed { self.placement.tables().relaxation() } else { None }
+    /// The displacements by which points are moved, in relaxed mode.
+    #[inline(always)]
+    pub(crate) fn displacements(&self) -> Option<&'a DisplacementTable<'a>> {
+        self.displacements
     }
 
     /// The points of this set that lie in a half-open rectangle of the caller's coordinates: exactly
     /// those, at a cost in proportion to their number and the rectangle's border. Clipping again
-    /// replaces the rectangle. Parts of a walk ([`shard`](Self::shard)) are taken after clipping.
+    /// replaces the rectangle.
+    ///
+    /// ```
+    /// use glam::{DVec2, Vec2};
+    /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling};
+    /// let placement = Placement::new(Domain::UNIT, 7);
+    /// let quarter = Domain::new(DVec2::ZERO, DVec2::splat(0.5))?;
+    /// let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(4000.0))?;
+    /// let mut buffer = [Vec2::ZERO; 1200];
+    /// let filled = sampling.clipped(quarter).fill(&mut buffer)?;
+    /// assert!(filled.written.abs_diff(1000) < 40);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub fn clipped(self, rectangle: Domain) -> Self {
-        let clip = Clip::rectangle_of(&self.placement.domain(), rectangle);
-        Self { clip, share: None, ..self }
-    }
-
-    /// Part `index` (from 0) of `of` parts of about equal work. The points of all parts, one part
-    /// after the other, are those of the whole in the same order; each point is in one part.
-    ///
-    /// Costs a walk over some twenty tiles a part, which every part's own walk repeats.
-    ///
-    /// # Errors
-    /// [`SamplingError::Shard`] unless `index` < `of`; otherwise as [`visit`](Self::visit).
-    pub fn shard(self, index: usize, of: usize) -> Result<Self, SamplingError> {
-        if index >= of {
-            return Err(SamplingError::Shard { index, of });
-        }
-        let (grain, total) = self.measure(of)?;
-        Ok(self.part(grain, total, index, of))
-    }
-
-    /// The grain for so many parts, and the work of all pieces.
-    pub(crate) fn measure(&self, parts: usize) -> Result<(u64, u64), SamplingError> {
-        let domain = self.placement.domain();
-        let expected = match self.expected {
-            Some(expected) => expected,
-            None => {
-                let bound = self.importance.upper_bound(&domain.region());
-                bound * self.density() * domain.area()
-            }
-        };
-        let share = expected * self.clip.area() / domain.area() / (8.0 * parts as f64);
-        let grain = (share as u64).max(256);
-        let measuring = Self { share: Some(Share::nothing(grain)), ..*self };
-        let mut traversal = AnyTraversal::new(&measuring);
-        while traversal.advance(&measuring)? {}
-        Ok((grain, traversal.passed()))
-    }
-
-    /// A part of the pieces that [`measure`](Self::measure) has measured.
-    pub(crate) fn part(self, grain: u64, total: u64, index: usize, of: usize) -> Self {
-        Self { share: Some(Share::part(grain, total, index, of)), ..self }
+        Self { clip: Clip::rectangle_of(&self.placement.domain(), rectangle), ..self }
     }
 
     /// The part of the plane from which points are taken.
     pub(crate) fn clip(&self) -> Clip {
         self.clip
-    }
-
-    /// The part of the walk that is taken.
-    pub(crate) fn share(&self) -> Option<Share> {
-        self.share
     }
 
     /// The placement.
@@ -345,7 +196,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     }
 
     /// The number of points expected over all seeds, if the importance knows its integral. Of the
-    /// whole set: clipping and sharing do not change it.
+    /// whole set: clipping does not change it.
     #[must_use]
     pub fn expected_points(&self) -> Option<f64> {
         self.expected
@@ -373,7 +224,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     pub(crate) fn rank_limit_of_bound(
         &self,
         bound: f64,
-        region: &Region,
+        region: &Disc,
     ) -> Result<u64, SamplingError> {
         if !(bound >= 0.0 && bound.is_finite()) {
             return Err(SamplingError::InvalidBound { near: region.centre, bound });
@@ -384,67 +235,5 @@ impl<'a, I: Importance> Sampling<'a, I> {
             return Err(SamplingError::TooDense { near: region.centre });
         }
         Ok(limit)
-    }
-
-    /// Calls `visit` for each point, in the order of the walk, until it breaks.
-    ///
-    /// Positions are glam's `Vec2` or `DVec2`, as `visit` takes them. Allocates nothing.
-    ///
-    /// # Errors
-    /// [`SamplingError`] when the importance breaks its own bounds or the walk its limits. Points
-    /// visited before that are points of the set.
-    pub fn visit<P: Position>(
-        &self,
-        mut visit: impl FnMut(Sample<P>) -> ControlFlow<()>,
-    ) -> Result<(), SamplingError> {
-        for sample in self.points()? {
-            if visit(sample?).is_break() {
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Writes positions into the caller's buffer, in the order of the walk, until it is full.
-    /// Allocates nothing.
-    ///
-    /// The fastest way: ground of constant importance is copied from the tables block by block. For
-    /// relaxed points of a constant importance, from some 8,000 of them on, it takes 87 KB of stack.
-    ///
-    /// # Errors
-    /// As [`visit`](Self::visit); the buffer then holds some of the points.
-    pub fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
-        walk::fill::fill(self, buffer)
-    }
-
-    /// The same with one buffer a coordinate; the shorter one's length counts.
-    ///
-    /// # Errors
-    /// As [`fill`](Self::fill).
-    pub fn fill_columns<S: Coordinate>(
-        &self,
-        x: &mut [S],
-        y: &mut [S],
-    ) -> Result<Filled, SamplingError> {
-        let length = x.len().min(y.len());
-        let (x, y) = (&mut x[..length], &mut y[..length]);
-        walk::fill::fill(self, walk::fill::Columns::<S::Position> { x, y })
-    }
-
-    /// Counts what the walk does: how many tiles it visits and how many candidates it tests for the
-    /// points it makes. Costs a walk.
-    ///
-    /// # Errors
-    /// As [`visit`](Self::visit).
-    pub fn effort(&self) -> Result<Effort, SamplingError> {
-        Effort::of(self)
-    }
-
-    /// An iterator over the points. It holds its state (some 10 KiB) itself and allocates nothing.
-    ///
-    /// # Errors
-    /// [`SamplingError::Precision`] if the position type cannot represent any point of the domain.
-    pub fn points<P: Position>(&self) -> Result<Points<'a, I, P>, SamplingError> {
-        Points::new(*self)
     }
 }

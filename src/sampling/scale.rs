@@ -23,7 +23,7 @@ impl RankScale {
     /// The importance that a rank needs.
     #[inline(always)]
     pub(crate) fn importance_of(self, rank: u64) -> f64 {
-        // Ranks are below 2⁶³, of which the conversion is the cheaper one.
+        // Ranks are below 2⁶³, so `i64` serves, which converts faster than `u64`.
         rank as i64 as f64 / self.magnification
     }
 
@@ -53,8 +53,8 @@ impl RankScale {
         value * self.magnification - self.shift
     }
 
-    /// rank + u: a point's place in the sequence. Ranks are below 2⁶³, of which the conversion is the
-    /// cheaper one.
+    /// rank + u: a point's place in the sequence. Ranks are below 2⁶³, so `i64` serves, which
+    /// converts faster than `u64`.
     #[inline(always)]
     pub(crate) fn shifted(self, rank: u64) -> f64 {
         rank as i64 as f64 + self.shift

@@ -1,6 +1,7 @@
 //! How many tiles a root has after m subdivisions: N_{m+1} = 14·N_m − N_{m−1}.
 
-use super::rank::RankError;
+use core::fmt;
+
 use super::tile::TileType;
 
 /// The deepest level whose tile count fits `u64`, for every root (N₁₆ < 2⁶¹, N₁₇ > 2⁶⁴).
@@ -64,4 +65,81 @@ impl TileCounts {
     pub fn all(&self) -> &[u64] {
         &self.0[1..]
     }
+
+    /// (N_m, N_{m−1}) of a level that exists: the two numbers of which ranks are made.
+    #[inline(always)]
+    pub(crate) fn pair(&self, level: u8) -> (u64, u64) {
+        let level = usize::from(level);
+        (self.0[level + 1], self.0[level])
+    }
+
+    /// The level L with N_{L−1} < T ≤ N_L, at least 1: where points of threshold T read their
+    /// displacements. Past the deepest level, one more than that.
+    pub(crate) fn level_of(&self, threshold: f64) -> u8 {
+        self.all().partition_point(|tiles| (*tiles as f64) < threshold).max(1) as u8
+    }
+
+    /// Whether points with thresholds up to `threshold` are at most `below` levels below a tile of
+    /// `level`.
+    #[inline(always)]
+    pub(crate) fn is_within(&self, level: u8, below: u8, threshold: f64) -> bool {
+        let tiles = self.all().get(usize::from(level + below));
+        tiles.is_none_or(|tiles| threshold <= *tiles as f64)
+    }
 }
+
+/// 1/N_m under the root `a`.
+pub(crate) static RECIPROCALS: [f64; MAX_LEVEL + 1] = {
+    let mut reciprocals = [1.0; MAX_LEVEL + 1];
+    let mut level = 0;
+    while level <= MAX_LEVEL {
+        if let Ok(tiles) = TileCounts::HEXAGON.at(level) {
+            reciprocals[level] = 1.0 / tiles as f64;
+        }
+        level += 1;
+    }
+    reciprocals
+};
+
+/// Why a rank could not be computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RankError {
+    /// The level is past [`MAX_LEVEL`], where ranks leave `u64`.
+    TooDeep {
+        /// The level asked for.
+        level: usize,
+    },
+    /// The rank is not below the number of tiles of its level.
+    NoSuchRank {
+        /// The rank.
+        rank: u64,
+        /// The number of tiles.
+        tiles: u64,
+    },
+    /// The tile with this rank has no child with this digit.
+    NoSuchChild {
+        /// The rank.
+        rank: u64,
+        /// The digit; 13 (D) when the tile is of type `a`.
+        digit: u8,
+    },
+}
+
+impl fmt::Display for RankError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooDeep { level } => {
+                write!(f, "level {level} is past {MAX_LEVEL}, the last whose ranks fit 64 bits")
+            }
+            Self::NoSuchRank { rank, tiles } => {
+                write!(f, "rank {rank} is not below {tiles}, the number of tiles of its level")
+            }
+            Self::NoSuchChild { rank, digit } => {
+                write!(f, "the tile of rank {rank} has no child with digit {digit}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for RankError {}

@@ -6,8 +6,7 @@
 
 use core::fmt;
 
-/// √3 rounded to the nearest `f64`. The only irrational number in the whole geometry.
-pub const SQRT_3: f64 = 1.732_050_807_568_877_2;
+use super::numbers::SQRT_3;
 
 /// A coordinate left the range of `i64` (level about 33 when starting from a root at 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-use super::subdivide::{Child, MAX_CHILDREN, children_in_derivation_order};
+use super::children::{Child, MAX_CHILDREN, children_in_derivation_order};
 use super::tile::TileType;
 
 /// Equation 1: `(child type, digits)` for each parent `a`, `b`, `c`, `d`.

@@ -5,20 +5,22 @@
 //!
 //! Source: V. Ostromoukhov, *Building 2D Low-Discrepancy Sequences for Hierarchical Importance
 //! Sampling Using Dodecagonal Aperiodic Tiling*. The paper's Figure 3 holds the geometry; here it is
-//! derived from vertex stars (see [`subdivide`]).
+//! derived from vertex stars (see [`children`]).
 
+pub mod children;
 pub mod counts;
 pub mod cyclotomic;
 pub mod digits;
 pub mod fcode;
+pub mod numbers;
 pub mod rank;
-pub mod subdivide;
+pub mod rules;
 pub mod tile;
 
-pub use counts::{MAX_LEVEL, TileCounts};
+pub use children::{Child, MAX_CHILDREN};
+pub use counts::{MAX_LEVEL, RankError, TileCounts};
 pub use cyclotomic::{Cyclotomic, OutOfRange, Surd};
 pub use digits::{Digits, DigitsError};
 pub use fcode::{FCode, FCodeError};
-pub use rank::RankError;
-pub use subdivide::{Child, Rules};
+pub use rules::Rules;
 pub use tile::{Tile, TileType};

@@ -1,7 +1,7 @@
 //! The exact rank: a numbering of the tiles without gaps, refined from level to level.
 //!
 //! The paper's own value of an F-code (its equations 4 and 5) numbers the tiles with gaps and
-//! collisions; see [`crate::paper`]. With the new digit d most significant, what does number them is
+//! collisions (`paper` in twelvefold-lab). With the new digit d most significant, what does number them is
 //!
 //! rank(child) = d·N_m + rank(parent)                  for d = 0 … C,
 //! rank(child) = 13·N_m + rank(parent) − N_{m−1}       for d = D,
@@ -9,56 +9,11 @@
 //! because an `a` tile has no D child and the `a` tiles of level m are exactly the first N_{m−1} ranks.
 //! A tile's centre child keeps its rank, so a rank is a fixed index into one endless sequence.
 
-use core::fmt;
-
-use super::counts::{MAX_LEVEL, TileCounts};
+use super::counts::{MAX_LEVEL, RankError, TileCounts};
 use super::cyclotomic::OutOfRange;
 use super::fcode::FCode;
-use super::subdivide::Rules;
+use super::rules::Rules;
 use super::tile::{Tile, TileType};
-
-/// Why a rank could not be computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum RankError {
-    /// The level is past [`MAX_LEVEL`], where ranks leave `u64`.
-    TooDeep {
-        /// The level asked for.
-        level: usize,
-    },
-    /// The rank is not below the number of tiles of its level.
-    NoSuchRank {
-        /// The rank.
-        rank: u64,
-        /// The number of tiles.
-        tiles: u64,
-    },
-    /// The tile with this rank has no child with this digit.
-    NoSuchChild {
-        /// The rank.
-        rank: u64,
-        /// The digit; 13 (D) when the tile is of type `a`.
-        digit: u8,
-    },
-}
-
-impl fmt::Display for RankError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooDeep { level } => {
-                write!(f, "level {level} is past {MAX_LEVEL}, the last whose ranks fit 64 bits")
-            }
-            Self::NoSuchRank { rank, tiles } => {
-                write!(f, "rank {rank} is not below {tiles}, the number of tiles of its level")
-            }
-            Self::NoSuchChild { rank, digit } => {
-                write!(f, "the tile of rank {rank} has no child with digit {digit}")
-            }
-        }
-    }
-}
-
-impl core::error::Error for RankError {}
 
 /// The rank of the child with `digit` (0..14) of a level-`level` tile with rank `parent`.
 ///

@@ -1,19 +1,34 @@
 //! Chunks: up to a few hundred candidates in arrays, one pass each for positions, bounds of the
 //! domain, importance and comparison. Each pass is a loop without branches over arrays, which
 //! compilers turn into vector instructions.
+//!
+//! ```text
+//! entries   start ………………… sure ………………… end      a batch: sure entries need no look at the importance
+//!           └─ chunk ─┘└─ chunk ─┘└─ chunk ─┘      at most 256 entries each, never some of both kinds
+//!
+//! load           x, y of the entries             always; candidate i is entry `first` + i
+//! mark_inside    keep = in domain and clip       only across the clip's border
+//! pack           candidates kept to the front    from here on candidate i is `entry[i]`
+//! read_values    values = importance at x, y     only entries that are not sure
+//! mark_accepted  keep = rank < limit(value)      the same
+//! ```
+//!
+//! Whoever receives the chunk takes the candidates with `keep` 1.
 
 use core::ops::Range;
 
 use glam::DVec2;
 
-use super::batch::{Batch, tile_counts};
-use super::frame::Segment;
-use super::ground::Steps;
-use super::kin::Walk;
-use super::scalar::{Position, Scalar};
+use super::candidates::Candidates;
+use super::context::Context;
+use super::displaced::Displaced;
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
-use crate::sampling::{Sampling, SamplingError};
+use crate::position::{Position, Scalar};
+use crate::sampling::Sampling;
+use crate::tiling::TileCounts;
+use crate::tree::frame::Segment;
 
 /// Candidates a chunk. A block of depth 2 fits, and the arrays stay in the first-level cache.
 pub(crate) const CHUNK: usize = 256;
@@ -58,29 +73,29 @@ impl<S: Scalar> Chunk<S> {
         if self.packed { self.entry[i].into() } else { self.first + i }
     }
 
-    /// Takes the batch's entries from `start` on, as many as fit and are certain alike, and marks the
-    /// points among them. Returns the next entry.
+    /// Takes the batch's entries from `start` on, as many as fit and are all sure or all not, and
+    /// marks the points among them. Returns the next entry.
     #[inline(always)]
     pub(crate) fn select<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        walk: &Walk<'_, '_, I, S>,
-        batch: &Batch,
+        walk: &Context<'_, '_, I, S>,
+        batch: &Candidates,
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        let certain = start < batch.certain;
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         if batch.inside {
-            if certain {
+            if sure {
                 self.keep[..self.len].fill(1);
             }
         } else {
             self.mark_inside::<I, P>(walk);
-            if !certain {
+            if !sure {
                 self.pack();
             }
         }
-        if !certain {
+        if !sure {
             self.read_values(sampling);
             self.mark_accepted(sampling, batch)?;
         }
@@ -92,7 +107,7 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn load(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
     ) -> usize {
         self.load_as(
@@ -109,9 +124,9 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn load_moved(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
-        steps: &Steps<'_, S>,
+        steps: &Displaced<'_, S>,
     ) -> usize {
         self.load_as(
             placement,
@@ -131,7 +146,7 @@ impl<S: Scalar> Chunk<S> {
     fn load_as(
         &mut self,
         placement: &Placement<'_>,
-        batch: &Batch,
+        batch: &Candidates,
         entries: Range<usize>,
         write: impl Fn(usize, Segment<'_, S>, &mut [S], &mut [S]),
     ) -> usize {
@@ -161,9 +176,9 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn mark_inside<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        walk: &Walk<'_, '_, I, S>,
+        walk: &Context<'_, '_, I, S>,
     ) {
-        let Walk { sampling, clip, to_caller } = *walk;
+        let Context { sampling, clip, to_world } = *walk;
         let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
         let zero = S::default();
         let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
@@ -173,7 +188,7 @@ impl<S: Scalar> Chunk<S> {
         if let Some(rectangle) = clip.rectangle() {
             let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
             for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
-                let [x, y] = to_caller.place::<P>(*x, *y).xy();
+                let [x, y] = to_world.place::<P>(*x, *y).xy();
                 *keep &= u8::from(rectangle.contains(DVec2::new(x.to_f64(), y.to_f64())));
             }
         }
@@ -181,7 +196,7 @@ impl<S: Scalar> Chunk<S> {
 
     /// Notes which entries of the block the candidates are.
     #[inline(always)]
-    pub(crate) fn name_entries(&mut self) {
+    pub(crate) fn list_entries(&mut self) {
         for (i, entry) in self.entry[..self.len].iter_mut().enumerate() {
             // A block has at most 37,829 entries.
             *entry = (self.first + i) as u16;
@@ -193,7 +208,7 @@ impl<S: Scalar> Chunk<S> {
     #[inline(always)]
     pub(crate) fn pack(&mut self) {
         if !self.packed {
-            self.name_entries();
+            self.list_entries();
         }
         let mut kept = 0;
         for i in 0..self.len.min(CHUNK) {
@@ -219,7 +234,7 @@ impl<S: Scalar> Chunk<S> {
     pub(crate) fn mark_accepted<I: Importance>(
         &mut self,
         sampling: &Sampling<'_, I>,
-        batch: &Batch,
+        batch: &Candidates,
     ) -> Result<(), SamplingError> {
         let len = self.len;
         let corner = sampling.placement().domain().min();
@@ -235,7 +250,7 @@ impl<S: Scalar> Chunk<S> {
 
         let block = batch.block(sampling.placement());
         let scale = sampling.scale();
-        let (tiles, before) = tile_counts(batch.node.level);
+        let (tiles, before) = TileCounts::HEXAGON.pair(batch.node.level);
         let (greatest, _) = block.rank_coefficients(batch.end - 1);
         let largest_term =
             batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));

@@ -8,99 +8,32 @@ use core::ops::Range;
 
 use glam::DVec2;
 
-use super::batch::{Batch, RECIPROCALS, tile_counts};
+use super::ancestry::{Ancestry, ClassFormula};
+use super::candidates::Candidates;
 use super::chunk::{CHUNK, Chunk};
-use super::kin::{Kin, Kinship, Lineage, Walk};
-use super::scalar::{Position, Scalar};
+use super::context::Context;
+use crate::domain::Disc;
+use crate::error::SamplingError;
 use crate::importance::Importance;
-use crate::placement::{FRONTIER_LEVEL, Placement};
-use crate::relaxed::{RUN, RelaxationTable};
-use crate::sampling::{Sampling, SamplingError};
-use crate::tiling::cyclotomic::SQRT_3;
+use crate::placement::{FIRST_RELAXED_LEVEL, Placement};
+use crate::position::{Position, Scalar};
+use crate::sampling::Sampling;
+use crate::tables::DisplacementTable;
+use crate::tables::displacement::RUN;
+use crate::tiling::counts::RECIPROCALS;
+use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tiling::{MAX_LEVEL, TileCounts};
-
-/// Points of earlier levels stay where they are: they occur where fewer than some four points are
-/// expected in a domain, and the tiles from which they could move in would be very many.
-pub(crate) const FIRST_RELAXED_LEVEL: u8 = FRONTIER_LEVEL + 2;
-
-/// δ = 7 + 4√3.
-pub(crate) const DELTA: f64 = 7.0 + 4.0 * SQRT_3;
-
-/// The level L with N_{L−1} < T ≤ N_L, at least 1.
-pub(crate) fn level_of(threshold: f64) -> u8 {
-    let counts = TileCounts::HEXAGON.all();
-    counts.partition_point(|tiles| (*tiles as f64) < threshold).max(1) as u8
-}
+use crate::tree::frame::EdgeFrame;
 
 /// How far, in units, points born at `level` or later may be moved: a vector is at most
-/// [`longest`](RelaxationTable::longest) edges of the point's level long, which is not above the
+/// [`longest`](DisplacementTable::longest) edges of the point's level long, which is not above the
 /// level of its birth.
 #[inline(always)]
-pub(crate) fn margin<K: Kinship>(sampling: &Sampling<'_, impl Importance>, level: u8) -> f64 {
-    if !K::RELAXED {
-        return 0.0;
-    }
+pub(crate) fn margin(sampling: &Sampling<'_, impl Importance>, level: u8) -> f64 {
     let level = level.clamp(FIRST_RELAXED_LEVEL, MAX_LEVEL as u8);
-    let longest = sampling.relaxation().map_or(0.0, RelaxationTable::longest);
+    let longest = sampling.displacements().map_or(0.0, DisplacementTable::longest);
     2.0 * sampling.placement().half_edge(level).length() * longest
-        + sampling.importance().longest_settling()
-}
-
-/// Whether points with thresholds up to `threshold` are at most so many levels below a tile of `level`.
-#[inline(always)]
-pub(crate) fn is_within(level: u8, below: u8, threshold: f64) -> bool {
-    let counts = TileCounts::HEXAGON.all();
-    counts.get(usize::from(level + below)).is_none_or(|tiles| threshold <= *tiles as f64)
-}
-
-/// A turn by a multiple of 30°: cosine and sine.
-#[derive(Clone, Copy)]
-pub(crate) struct Turn([f32; 2]);
-
-impl Turn {
-    /// By `turn`·30°, `turn` below 12.
-    #[inline(always)]
-    pub(crate) fn new(turn: u8) -> Self {
-        const H: f32 = (0.5 * SQRT_3) as f32;
-        const COSINES: [f32; 12] = [1.0, H, 0.5, 0.0, -0.5, -H, -1.0, -H, -0.5, 0.0, 0.5, H];
-        // Of a power of two, so that no index is out of range.
-        const TURNS: [Turn; 16] = {
-            let mut turns = [Turn([1.0, 0.0]); 16];
-            let mut k = 0;
-            while k < 12 {
-                turns[k] = Turn([COSINES[k], COSINES[(k + 9) % 12]]);
-                k += 1;
-            }
-            turns
-        };
-        TURNS[usize::from(turn % 16)]
-    }
-
-    /// The vector turned.
-    #[inline(always)]
-    pub(crate) fn turned(self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let [c, s] = self.0;
-        [c * x + -s * y, s * x + c * y]
-    }
-}
-
-/// The frame in which steps are given: an edge of the point's level, turned as its great-grandparent.
-#[derive(Clone, Copy)]
-pub(crate) struct StepFrame<S>([S; 3]);
-
-impl<S: Scalar> StepFrame<S> {
-    pub(crate) fn new(placement: &Placement<'_>, level: u8, rotation: u8) -> Self {
-        let edge = placement.turned_edge(level.min(MAX_LEVEL as u8), rotation);
-        Self([edge.x, edge.y, -edge.y].map(S::from_f64))
-    }
-
-    /// A step in units.
-    #[inline(always)]
-    pub(crate) fn step(&self, [x, y]: [f32; 2]) -> [S; 2] {
-        let [c, s, minus_s] = self.0;
-        let [x, y] = [x, y].map(|v| S::from_f64(f64::from(v)));
-        [c * x + minus_s * y, s * x + c * y]
-    }
+        + sampling.importance().longest_constraint()
 }
 
 /// The domain's least corner and its greatest place: where a border point that moves in finds its
@@ -111,11 +44,11 @@ fn inner_corners(placement: &Placement<'_>) -> (DVec2, DVec2) {
 }
 
 /// A chunk's points on their way.
-struct Mover<'w, 'a, I> {
+struct Displacer<'w, 'a, I> {
     sampling: &'w Sampling<'a, I>,
-    relaxation: &'w RelaxationTable<'a>,
-    batch: &'w Batch,
-    kin: &'w Kin,
+    displacements: &'w DisplacementTable<'a>,
+    batch: &'w Candidates,
+    ancestry: &'w Ancestry,
     /// Where importance is read.
     low: DVec2,
     high: DVec2,
@@ -124,20 +57,24 @@ struct Mover<'w, 'a, I> {
 impl<S: Scalar> Chunk<S> {
     /// As [`select`](Self::select), for relaxed points: takes the batch's entries from `start` on, as
     /// many as fit, and keeps the points among them, where they are moved to.
+    //
+    // load → values → (keep the accepted) → (drop what is too far from the clip) → pack with values → move
+    // → (keep what has landed inside). What is in brackets is for entries that are not sure or not inside.
     #[inline(always)]
     pub(crate) fn select_relaxed<I: Importance, P: Position<Scalar = S>>(
         &mut self,
-        walk: &Walk<'_, '_, I, S>,
-        relaxation: &RelaxationTable<'_>,
-        (batch, kin): (&Batch, &Kin),
+        walk: &Context<'_, '_, I, S>,
+        displacements: &DisplacementTable<'_>,
+        batch: &Candidates,
+        ancestry: &Ancestry,
         start: usize,
     ) -> Result<usize, SamplingError> {
         let sampling = walk.sampling;
-        // Certain ones too read the importance: their phase depends on it.
-        let certain = start < batch.certain;
+        // Sure ones too read the importance: their phase depends on it.
+        let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
-        let mover = Mover { sampling, relaxation, batch, kin, low, high };
+        let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
         if batch.inside {
             self.read_values(sampling);
         } else {
@@ -149,16 +86,16 @@ impl<S: Scalar> Chunk<S> {
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
         }
-        if certain {
+        if sure {
             self.keep[..self.len].fill(1);
         } else {
             self.mark_accepted(sampling, batch)?;
         }
         if !batch.inside {
-            self.unmark_far(walk);
+            self.reject_far(walk);
         }
-        match certain && batch.inside {
-            true => self.name_entries(),
+        match sure && batch.inside {
+            true => self.list_entries(),
             false => self.pack_with_values(),
         }
         mover.move_all(self);
@@ -172,16 +109,16 @@ impl<S: Scalar> Chunk<S> {
 
     /// Unmarks those of the marked candidates that are too far from the clip to be moved into it.
     #[inline(always)]
-    fn unmark_far<I: Importance>(&mut self, walk: &Walk<'_, '_, I, S>) {
-        let Walk { sampling, clip, .. } = *walk;
+    fn reject_far<I: Importance>(&mut self, walk: &Context<'_, '_, I, S>) {
+        let Context { sampling, clip, .. } = *walk;
         let len = self.len.min(CHUNK);
         let mut least = f64::MAX;
         for (value, keep) in self.values[..len].iter().zip(&self.keep) {
             least = if *keep == 1 && *value < least { *value } else { least };
         }
         // The sparser, the longer are the vectors.
-        let level = level_of(sampling.scale().threshold(least));
-        let margin = margin::<Kin>(sampling, level) * (1.0 + 1e-6);
+        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(least));
+        let margin = margin(sampling, level) * (1.0 + 1e-6);
         let corner = sampling.placement().domain().min();
         let (low, high) = clip.widened(margin);
         let (low, high) = (low - corner, high - corner);
@@ -193,7 +130,7 @@ impl<S: Scalar> Chunk<S> {
     }
 }
 
-impl<I: Importance> Mover<'_, '_, I> {
+impl<I: Importance> Displacer<'_, '_, I> {
     /// The place of the domain nearest to a centre.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S, y: S) -> DVec2 {
@@ -201,13 +138,13 @@ impl<I: Importance> Mover<'_, '_, I> {
         (corner + DVec2::new(x.to_f64(), y.to_f64())).clamp(self.low, self.high)
     }
 
-    /// The phase that a point reads, at whose level's parents there is one tile in `per_tile` ranks, and
-    /// the contrast: its centre is nearest to `at`, where the importance is `value`.
+    /// The phase that a point reads, and the detail. `at` is the place of the domain nearest to its
+    /// centre, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
         let local = self.sampling.scale().threshold(importance.local(at, value));
-        let detail = if self.relaxation.has_rough() { importance.detail(at) } else { 0.0 };
+        let detail = if self.displacements.has_rough() { importance.detail(at) } else { 0.0 };
         ((local * per_tile).clamp(1.0, DELTA), detail)
     }
 
@@ -217,17 +154,29 @@ impl<I: Importance> Mover<'_, '_, I> {
         let node = &self.batch.node;
         let placement = self.sampling.placement();
         // Written out here and below: `map` of an array is not always inlined.
-        let lineage = |below: usize| Lineage::of_entries(self.kin, node, below);
-        let lineages = [lineage(1), lineage(2), lineage(3)];
+        let formula = |below: usize| ClassFormula::of_entries(self.ancestry, node, below);
+        let formulas = [formula(1), formula(2), formula(3)];
         let frame = |deep: u8| {
-            let rotation = lineages[usize::from(deep)].rotation;
-            StepFrame::<S>::new(placement, node.level + 1 + deep, rotation)
+            let rotation = formulas[usize::from(deep)].rotation;
+            EdgeFrame::<S>::new(placement.turned_edge(node.level + 1 + deep, rotation))
         };
         let frames = [frame(0), frame(1), frame(2)];
         let len = chunk.len.min(CHUNK);
+        let free = self.nothing_constrains();
         for start in (0..len).step_by(RUN) {
-            self.move_run(chunk, start..len.min(start + RUN), &lineages, &frames);
+            self.move_run(chunk, start..len.min(start + RUN), &formulas, &frames, free);
         }
+    }
+
+    /// Whether points of the batch may go anywhere: the importance is nowhere 0 where they can.
+    #[inline(always)]
+    fn nothing_constrains(&self) -> bool {
+        let (sampling, node) = (self.sampling, &self.batch.node);
+        let (placement, importance) = (sampling.placement(), sampling.importance());
+        let centre = placement.domain().min() + placement.centre(node);
+        let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
+        importance.longest_constraint() <= 0.0
+            && importance.lower_bound(&Disc { centre, radius }) > 0.0
     }
 
     /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
@@ -238,8 +187,9 @@ impl<I: Importance> Mover<'_, '_, I> {
         &self,
         chunk: &mut Chunk<S>,
         run: Range<usize>,
-        lineages: &[Lineage; 3],
-        frames: &[StepFrame<S>; 3],
+        formulas: &[ClassFormula; 3],
+        frames: &[EdgeFrame<S>; 3],
+        free: bool,
     ) {
         let Self { sampling, batch, .. } = *self;
         let (placement, scale) = (sampling.placement(), sampling.scale());
@@ -266,7 +216,7 @@ impl<I: Importance> Mover<'_, '_, I> {
         }
         let (local, unread) = (&mut local[..len], &mut details[..len]);
         sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
-        if !self.relaxation.has_rough() {
+        if !self.displacements.has_rough() {
             details = [0.0; RUN];
         }
         for k in 0..len {
@@ -287,40 +237,40 @@ impl<I: Importance> Mover<'_, '_, I> {
             let entry = usize::from(chunk.entry[run.start + k]);
             coefficients[k] = block.rank_coefficients(entry);
             (turns[k], classes[k]) = match deep[k] {
-                2.. => block.third(entry),
-                deep => (lineages[usize::from(deep)].turn, 0),
+                2.. => block.relax_key(entry),
+                deep => (formulas[usize::from(deep)].turn, 0),
             };
         }
         let class = |k: usize, generations: u32| match (deep[k], generations) {
             (2.., 2) => classes[k].into(),
             (deep, _) => {
-                lineages[usize::from(deep).min(2)].class(generations as usize, coefficients[k])
+                formulas[usize::from(deep).min(2)].class(generations as usize, coefficients[k])
             }
         };
-        let [vx, vy] = self.relaxation.vectors(len, &phases, &details, class);
+        let [vx, vy] = self.displacements.vectors(len, &phases, &details, class);
         let (mut dx, mut dy) = ([S::default(); RUN], [S::default(); RUN]);
         for k in 0..len {
-            let vector = Turn::new(turns[k]).turned([vx[k], vy[k]]);
-            [dx[k], dy[k]] = frames[usize::from(deep[k]).min(2)].step(vector);
+            let vector = Rotation::new(turns[k]).rotated([vx[k], vy[k]]);
+            [dx[k], dy[k]] = frames[usize::from(deep[k]).min(2)].displacement(vector);
         }
         if other[..len].iter().fold(0, |any, other| any | other) != 0 {
             for k in (0..len).filter(|k| other[*k] != 0) {
                 [dx[k], dy[k]] = self.step(chunk, run.start + k);
             }
         }
-        if sampling.importance().longest_settling() > 0.0 {
-            self.settle(chunk, run, &dx, &dy);
-        } else {
+        if free {
             let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
             for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
                 (*x, *y) = (*x + *dx, *y + *dy);
             }
+        } else {
+            self.constrain(chunk, run, &dx, &dy);
         }
     }
 
     /// Moves points by steps, or to where the importance lets them go.
     #[inline(always)]
-    fn settle<S: Scalar>(
+    fn constrain<S: Scalar>(
         &self,
         chunk: &mut Chunk<S>,
         run: Range<usize>,
@@ -332,25 +282,31 @@ impl<I: Importance> Mover<'_, '_, I> {
         let corner = placement.domain().min();
         let block = self.batch.block(placement);
         let len = run.len().min(RUN);
-        let (mut moved_x, mut moved_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        // Where the points are moved, or the nearest place in the domain: out of it they end.
+        let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
         for k in 0..len {
             let i = run.start + k;
-            moved_x[k] = corner.x + (chunk.x[i] + dx[k]).to_f64();
-            moved_y[k] = corner.y + (chunk.y[i] + dy[k]).to_f64();
-            needed[k] = scale.importance_of(self.batch.rank(block, chunk.entry[i].into()));
+            let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
+            [at_x[k], at_y[k]] = moved.to_array();
         }
-        let mut stays = [0u8; RUN];
-        importance.stays(&moved_x[..len], &moved_y[..len], &needed[..len], &mut stays[..len]);
+        for (k, needed) in needed[..len].iter_mut().enumerate() {
+            let entry = chunk.entry[run.start + k].into();
+            *needed = scale.importance_of(self.batch.rank(block, entry));
+        }
+        let mut unconstrained = [0u8; RUN];
+        let to = &mut unconstrained[..len];
+        importance.unconstrained(&at_x[..len], &at_y[..len], &needed[..len], to);
         for k in 0..len {
             let i = run.start + k;
             let (x, y) = (chunk.x[i], chunk.y[i]);
             (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
-            if stays[k] == 0 {
-                let centre = corner + DVec2::new(x.to_f64(), y.to_f64());
-                let moved = DVec2::new(moved_x[k], moved_y[k]);
-                let settled = importance.settle(centre, moved, needed[k]);
-                if settled != moved {
-                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+            if unconstrained[k] == 0 {
+                let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+                if moved == DVec2::new(at_x[k], at_y[k]) {
+                    let settled = importance.constrain(self.nearest(x, y), moved, needed[k]);
+                    if settled != moved {
+                        [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+                    }
                 }
             }
         }
@@ -360,36 +316,39 @@ impl<I: Importance> Mover<'_, '_, I> {
     /// children with points far below them.
     #[inline(never)]
     fn step<S: Scalar>(&self, chunk: &Chunk<S>, i: usize) -> [S; 2] {
-        let Self { sampling, batch, kin, .. } = *self;
+        let Self { sampling, batch, ancestry, .. } = *self;
         let (entry, value) = (usize::from(chunk.entry[i]), chunk.values[i]);
         let (placement, node) = (sampling.placement(), &batch.node);
         let tables = placement.tables();
-        let level = level_of(sampling.scale().threshold(value));
+        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(value));
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
         let at = self.nearest(chunk.x[i], chunk.y[i]);
         let (phase, detail) = self.phase(at, value, RECIPROCALS[usize::from(level) - 1]);
-        let reading = self.relaxation.reading(phase, detail);
+        let reading = self.displacements.reading(phase, detail);
         let below = usize::from(level.saturating_sub(node.level));
         let block = batch.block(placement);
-        let (tiles, before) = tile_counts(node.level);
         let child = match below {
             // A child is one level below the tile; further down its centre is followed.
-            2.. => node.child(tables, entry, tiles, before),
+            2.. => node.child(tables, entry),
             _ => None,
         };
-        let (lineage, coefficients) = match child {
-            _ if entry == 0 => (Lineage::of_centre(tables, kin, node, below), (0, 0)),
+        let (formula, coefficients) = match child {
+            _ if entry == 0 => (ClassFormula::of_centre(tables, ancestry, node, below), (0, 0)),
             Some(child) => {
-                let kin = kin.child(node, entry, &child);
-                (Lineage::of_centre(tables, &kin, &child, below - 1), (0, 0))
+                let ancestry = ancestry.child(node, entry, &child);
+                (ClassFormula::of_centre(tables, &ancestry, &child, below - 1), (0, 0))
             }
-            // A bound that is no promise may have hidden that a point is deeper than any here.
-            None => (Lineage::of_entries(kin, node, below.min(2)), block.rank_coefficients(entry)),
+            // A bound that need not hold may have hidden that a point is deeper than any here.
+            None => (
+                ClassFormula::of_entries(ancestry, node, below.min(2)),
+                block.rank_coefficients(entry),
+            ),
         };
-        let class = |generations: u32| lineage.class(generations as usize, coefficients);
-        let vector = Turn::new(lineage.turn).turned(self.relaxation.vector(&reading, class));
-        StepFrame::new(placement, level, lineage.rotation).step(vector)
+        let class = |generations: u32| formula.class(generations as usize, coefficients);
+        let vector =
+            Rotation::new(formula.turn).rotated(self.displacements.vector(&reading, class));
+        EdgeFrame::new(placement.turned_edge(level, formula.rotation)).displacement(vector)
     }
 }

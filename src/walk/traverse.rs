@@ -4,27 +4,38 @@
 //! not the centre's own is N_m + r. A tile's centre is tested with its parent's batch; so a subtree
 //! whose bound in rank units is at most N_m + r needs no visit. This is sharper than the paper's κ
 //! (its equation 8) and takes no logarithm.
+//!
+//! ```text
+//! level m      tile: limit = ranks that its bound admits
+//!                │ limit ≤ N_m + r                      nothing below it: passed over
+//!                │ few entries left to test             one batch: the block's entries below limit
+//!                │ otherwise: opened                    one batch: the children's centres
+//! level m + 1    ├─ child 0 ─ …                         then each child, digit 0 first
+//!                ├─ child 1 ─ …
+//! ```
+//!
+//! `advance` goes to the next tile (a child of the deepest open tile, or a tile of the frontier, whose own
+//! centre is a batch by itself) and visits it, until there is a batch to hand out.
 
-use super::batch::{
-    Batch, count_below, count_below_at_most, levels_below, tile_counts, tiles_at, work_below,
-};
+use super::candidates::Candidates;
 use super::chunk::Chunk;
-use super::expand::Open;
-use super::ground::Steps;
-use super::kin::{Kinship, Walk};
-use super::node::Node;
-use super::relaxed::{is_within, margin};
-use super::scalar::Position;
-use super::share::Share;
-use crate::clip::{Clip, ToCaller};
-use crate::domain::Region;
+use super::context::Context;
+use super::count::{count_below, count_below_at_most, levels_below, work_below};
+use super::displaced::Displaced;
+use super::mode::Mode;
+use super::open::OpenTile;
+use super::shard::Shard;
+use crate::domain::Disc;
+use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::FRONTIER_LEVEL;
-use crate::sampling::{Sampling, SamplingError};
-use crate::tiling::MAX_LEVEL;
+use crate::position::Position;
+use crate::sampling::{Clip, Sampling, ToWorld};
+use crate::tiling::{MAX_LEVEL, TileCounts};
+use crate::tree::node::Node;
 
 /// Open tiles: one a level from the frontier on; the deepest tiles have no children.
-const OPEN: usize = MAX_LEVEL - FRONTIER_LEVEL as usize;
+const MAX_OPEN: usize = MAX_LEVEL - FRONTIER_LEVEL as usize;
 
 /// From this many candidates on, it is found out which of them need no test. On a smooth map, 128 costs
 /// a sixth more at 64k points and a tenth less at 64; 8 costs up to half as much again.
@@ -42,45 +53,46 @@ const PEAK: f64 = 2.0;
 /// The same at a peak, where the bounds of tiles below differ and save more.
 const FEW_AT_PEAK: usize = 130;
 
-/// The same for a tile across the clip's border, where candidates may be in vain and cost more. From
+/// The same for a tile across the clip's border, where a candidate may lie outside, and costs more. From
 /// 200 to 400 a thousand uniform points cost two thirds; from 400 to 800 other small counts rise.
 const FEW_AT_BORDER: usize = 400;
 
-/// Relaxed points know their kin by the tile at most so many levels above them.
+/// Relaxed points know their ancestry by the tile at most so many levels above them.
 const KIN_LEVELS: u8 = 3;
 
 /// A traversal in progress. Holds everything it needs; nothing is allocated.
 #[derive(Clone, Debug)]
 pub(crate) struct Traversal<K> {
-    open: [Open<K>; OPEN],
+    open: [OpenTile<K>; MAX_OPEN],
     depth: usize,
     /// The number of frontier tiles begun.
     frontier: usize,
-    /// Of the last one, if only its centre has had its turn: how many ranks its bound admits.
+    /// How many ranks the bound of the frontier tile begun last admits, while only that tile's centre
+    /// has been tested.
     begun: Option<u64>,
     clip: Clip,
     /// The part of the walk that is taken; `None` for all of it.
-    share: Option<Share>,
+    shard: Option<Shard>,
     tiles_left: u64,
     /// The tile being visited and its candidates, built in place.
-    batch: Batch,
-    kinship: K,
+    batch: Candidates,
+    ancestry: K,
     /// Whether the tile's bound is well above its siblings'.
     peak: bool,
 }
 
-impl<K: Kinship> Traversal<K> {
-    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>) -> Self {
+impl<K: Mode> Traversal<K> {
+    pub(crate) fn new<I: Importance>(sampling: &Sampling<'_, I>, shard: Option<Shard>) -> Self {
         Self {
-            open: [Open::CLOSED; OPEN],
+            open: [OpenTile::CLOSED; MAX_OPEN],
             depth: 0,
             frontier: 0,
             begun: None,
             clip: sampling.clip(),
-            share: sampling.share(),
+            shard,
             tiles_left: sampling.limits().tiles,
-            batch: Batch::EMPTY,
-            kinship: K::NONE,
+            batch: Candidates::EMPTY,
+            ancestry: K::NONE,
             peak: false,
         }
     }
@@ -91,17 +103,17 @@ impl<K: Kinship> Traversal<K> {
     pub(crate) fn select<I: Importance, P: Position>(
         &self,
         sampling: &Sampling<'_, I>,
-        to_caller: &ToCaller<P::Scalar>,
+        to_world: &ToWorld<P::Scalar>,
         start: usize,
         chunk: &mut Chunk<P::Scalar>,
     ) -> Result<usize, SamplingError> {
-        let walk = Walk { sampling, clip: &self.clip, to_caller };
-        self.kinship.select::<I, P>(&walk, &self.batch, start, chunk)
+        let walk = Context { sampling, clip: &self.clip, to_world };
+        self.ancestry.select::<I, P>(&walk, &self.batch, start, chunk)
     }
 
     /// The current batch of candidates.
     #[inline(always)]
-    pub(crate) fn batch(&self) -> &Batch {
+    pub(crate) fn batch(&self) -> &Candidates {
         &self.batch
     }
 
@@ -110,20 +122,20 @@ impl<K: Kinship> Traversal<K> {
     pub(crate) fn select_moved<I: Importance, P: Position>(
         &self,
         sampling: &Sampling<'_, I>,
-        to_caller: &ToCaller<P::Scalar>,
+        to_world: &ToWorld<P::Scalar>,
         start: usize,
-        steps: &Steps<'_, P::Scalar>,
+        steps: &Displaced<'_, P::Scalar>,
         chunk: &mut Chunk<P::Scalar>,
     ) -> usize {
         let entries = start..self.batch.end;
         let next = chunk.load_moved(sampling.placement(), &self.batch, entries, steps);
-        chunk.mark_inside::<I, P>(&Walk { sampling, clip: &self.clip, to_caller });
+        chunk.mark_inside::<I, P>(&Context { sampling, clip: &self.clip, to_world });
         next
     }
 
     /// The work that a walk by parts has passed.
     pub(crate) fn passed(&self) -> u64 {
-        self.share.map_or(0, |share| share.passed())
+        self.shard.map_or(0, |shard| shard.passed())
     }
 
     /// How many more tiles the walk may visit.
@@ -150,7 +162,8 @@ impl<K: Kinship> Traversal<K> {
                 self.begun = self.enter_frontier(sampling, node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
-                    if self.share.as_mut().is_none_or(|share| share.take(1, 0)) {
+                    self.batch.sure = usize::from(self.batch.constant);
+                    if self.shard.as_mut().is_none_or(|shard| shard.take(1, 0)) {
                         return Ok(true);
                     }
                 }
@@ -176,13 +189,12 @@ impl<K: Kinship> Traversal<K> {
             let digit = open.pending.trailing_zeros() as usize;
             let bit = 1 << digit;
             open.pending &= !bit;
-            let (tiles, before) = tile_counts(open.node.level);
-            self.batch.node = open.node.child(tables, digit, tiles, before)?;
-            self.kinship = open.kinship.child(&open.node, digit, &self.batch.node);
+            self.batch.node = open.node.child(tables, digit)?;
+            self.ancestry = open.ancestry.child(&open.node, digit, &self.batch.node);
             self.batch.bound = open.bounds[digit];
             self.peak = open.bounds[digit] > PEAK * open.mean_bound;
             self.batch.inside = open.inside & bit != 0;
-            self.batch.certain = if open.constant & bit != 0 { usize::MAX } else { 0 };
+            self.batch.constant = open.constant & bit != 0;
             return Some(open.limits[digit]);
         }
     }
@@ -195,9 +207,9 @@ impl<K: Kinship> Traversal<K> {
     ) -> Result<Option<u64>, SamplingError> {
         let placement = sampling.placement();
         let centre = placement.domain().min() + placement.centre(node);
-        let region = Region { centre, radius: placement.reach(node.level, usize::MAX) };
-        let radius = region.radius + margin::<K>(sampling, node.level);
-        let region_of_points = Region { radius, ..region };
+        let region = Disc { centre, radius: placement.reach(node.level, usize::MAX) };
+        let radius = region.radius + K::margin(sampling, node.level);
+        let region_of_points = Disc { radius, ..region };
         if !self.clip.touches(&region_of_points) {
             return Ok(None);
         }
@@ -205,20 +217,19 @@ impl<K: Kinship> Traversal<K> {
             // Importance is read at the nearest place of the domain.
             true => {
                 let domain = placement.domain();
-                Region { centre: centre.clamp(domain.min(), domain.max()), ..region }
+                Disc { centre: centre.clamp(domain.min(), domain.max()), ..region }
             }
             false => region,
         };
         let bound = sampling.importance().upper_bound(&region);
         let limit = sampling.rank_limit_of_bound(bound, &region)?;
         self.batch.node = *node;
-        self.kinship = K::frontier(placement.tables(), node);
+        self.ancestry = K::frontier(placement.tables(), node);
         self.batch.bound = bound;
         // No siblings to compare with.
         self.peak = true;
         self.batch.inside = self.clip.holds(&region_of_points);
-        let constant = sampling.importance().is_constant(&region);
-        self.batch.certain = if constant { usize::MAX } else { 0 };
+        self.batch.constant = sampling.importance().is_constant(&region);
         Ok((limit > node.rank).then_some(limit))
     }
 
@@ -235,27 +246,27 @@ impl<K: Kinship> Traversal<K> {
             .checked_sub(1)
             .ok_or(SamplingError::TilesLimit { limit: sampling.limits().tiles })?;
         self.batch.start = 1;
-        let mut share = self.share.as_mut().filter(|share| !share.is_in_piece(self.depth));
-        let Batch { node, inside, certain, bound, .. } = &self.batch;
-        let constant = *certain > 0;
-        if limit <= tiles_at(node.level).saturating_add(node.rank) {
+        let mut shard = self.shard.as_mut().filter(|shard| !shard.is_in_piece(self.depth));
+        let Candidates { node, inside, constant, bound, .. } = &self.batch;
+        let constant = *constant;
+        if limit <= TileCounts::HEXAGON.pair(node.level).0.saturating_add(node.rank) {
             return Ok(false);
         }
         let tables = sampling.placement().tables();
         let block = tables.block(node.kind);
         let levels = levels_below(node, limit);
-        if let Some(part) = &mut share {
+        if let Some(part) = &mut shard {
             let work = work_below(node, limit);
             if part.is_piece(work) {
                 if !part.take(work, self.depth) {
                     return Ok(false);
                 }
-                share = None;
+                shard = None;
             }
         }
-        // Relaxed points know their kin that near only.
+        // The ancestry of relaxed points reaches only so many levels down.
         let near = !K::RELAXED
-            || is_within(
+            || TileCounts::HEXAGON.is_within(
                 node.level,
                 KIN_LEVELS.min(tables.depth().max(2)),
                 sampling.scale().threshold(*bound),
@@ -266,45 +277,48 @@ impl<K: Kinship> Traversal<K> {
             } else {
                 count_below_at_most(node, block, levels, limit)
             };
-            let certain = match constant {
-                true => end,
-                false if end < WORTH_A_BOUND || (K::RELAXED && !inside) => 0,
-                false => certain_below(sampling, (node, *bound), levels).min(end),
+            let sure = if constant {
+                end
+            } else if end < WORTH_A_BOUND || (K::RELAXED && !inside) {
+                0
+            } else {
+                sure_below(sampling, node, *bound, levels).min(end)
             };
             let few = match (constant, inside) {
                 // Whole blocks, whose vectors are looked up together.
                 (true, false) if K::RELAXED => true,
                 (_, false) => end <= FEW_AT_BORDER,
-                (_, true) => end - certain <= if self.peak { FEW_AT_PEAK } else { FEW },
+                (_, true) => end - sure <= if self.peak { FEW_AT_PEAK } else { FEW },
             };
             if levels == 1 || few {
-                let taken = share.is_none_or(|share| share.take(end as u64, self.depth));
-                (self.batch.end, self.batch.certain) = (end, certain);
+                let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth));
+                (self.batch.end, self.batch.sure) = (end, sure);
                 return Ok(taken);
             }
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
-        open.expand(sampling, &self.clip, (node, &self.kinship), limit, *inside)?;
+        open.expand(sampling, &self.clip, node, &self.ancestry, limit, *inside)?;
         // Deeper levels are wanted, so that all children's centres are.
         let end = block.born_before(2);
-        let taken = share.is_none_or(|share| share.take(end as u64, self.depth + 1));
+        let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth + 1));
         self.depth += 1;
-        self.batch.end = end;
+        (self.batch.end, self.batch.sure) = (end, if constant { end } else { 0 });
         Ok(taken)
     }
 }
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
 /// importance is there, between its lower bound and the upper `bound`.
-fn certain_below<I: Importance>(
+fn sure_below<I: Importance>(
     sampling: &Sampling<'_, I>,
-    (node, bound): (&Node, f64),
+    node: &Node,
+    bound: f64,
     levels: usize,
 ) -> usize {
     let placement = sampling.placement();
     let centre = placement.domain().min() + placement.centre(node);
-    let region = Region { centre, radius: placement.reach(node.level, levels) };
+    let region = Disc { centre, radius: placement.reach(node.level, levels) };
     let lower = sampling.importance().lower_bound(&region);
     // A broken promise admits no more than the upper bound; NaN, nothing.
     let limit = sampling.scale().limit(if lower > bound { bound } else { lower });

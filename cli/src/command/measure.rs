@@ -8,7 +8,7 @@ use glam::DVec2;
 use twelvefold_lab::measure::discrepancy::{self, Bounds};
 use twelvefold_lab::measure::nearest::{self, Summary};
 use twelvefold_lab::measure::periodogram::Periodogram;
-use twelvefold_lab::measure::{Window, fidelity, hexagonal_distance, spectrum};
+use twelvefold_lab::measure::{MeasureError, Window, fidelity, hexagonal_distance, spectrum};
 
 use crate::args::MeasureOptions;
 use twelvefold_files::failure::Failure;
@@ -35,7 +35,7 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
     let image = match &options.image {
         None => None,
         Some(path) => {
-            let tone = Tone { linear: options.linear, invert: options.invert };
+            let tone = Tone { linear: options.linear, invert: options.invert, ..Tone::default() };
             let picture = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
             Some(picture)
         }
@@ -44,12 +44,13 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
         (Some(window), _) => window,
         (None, Some(image)) => {
             Window::new(DVec2::ZERO, DVec2::new(image.width as f64, image.height as f64))
+                .map_err(|error| of_list(error.into()))?
         }
-        (None, None) => Window::new(DVec2::ZERO, DVec2::ONE),
+        (None, None) => Window::UNIT,
     };
     let inside: Vec<DVec2> = points.iter().copied().filter(|p| window.contains(*p)).collect();
     if inside.len() < 2 {
-        let Window { min, size } = window;
+        let (min, size) = (window.min(), window.size());
         let reason = format!(
             "has {} points, {} of them in the window {},{},{},{}; two are needed (see --window)",
             points.len(),
@@ -62,13 +63,19 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
         return Err(of_list(reason.into()));
     }
 
-    let mut table = uniform(&points, &inside, window);
+    let mut table = uniform(&points, &inside, window).map_err(|error| of_list(error.into()))?;
     if let Some(image) = &image {
-        let importance = fidelity::Importance { values: &image.importance, width: image.width };
-        if let Some(found) = fidelity::fidelity(&points, &importance) {
-            table.push(("block variance", found.block_variance));
-            table.push(("local nearest mean", found.mean_distance));
-            table.push(("local nearest 1 %", found.first_percentile));
+        let found = fidelity::Raster::new(image.width, &image.importance)
+            .and_then(|raster| fidelity::fidelity(&points, &raster));
+        match found {
+            Ok(found) => {
+                table.push(("block variance", found.block_variance));
+                table.push(("local nearest mean", found.mean_distance));
+                table.push(("local nearest 1 %", found.first_percentile));
+            }
+            // A short list, or a picture of nothing, has the other measures.
+            Err(MeasureError::TooFew { .. } | MeasureError::AllZero) => {}
+            Err(error) => return Err(of_list(error.into())),
         }
     }
 
@@ -79,8 +86,8 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
         table.iter().try_for_each(|(name, value)| writeln!(out, "{name},{value}"))
     })?;
     if options.spectrum.is_some() || options.rings.is_some() {
-        let periodogram = Periodogram::new(&points, window)
-            .ok_or_else(|| of_list("has too few points in the window for a spectrum".into()))?;
+        let periodogram =
+            Periodogram::new(&points, window).map_err(|error| of_list(error.into()))?;
         if let Some(path) = &options.rings {
             write_file(path, |out| {
                 writeln!(out, "frequency,power,anisotropy")?;
@@ -97,33 +104,34 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
 }
 
 /// The measures that take the density as constant.
-fn uniform(points: &[DVec2], inside: &[DVec2], window: Window) -> Vec<(&'static str, f64)> {
+fn uniform(
+    points: &[DVec2],
+    inside: &[DVec2],
+    window: Window,
+) -> Result<Vec<(&'static str, f64)>, MeasureError> {
     let mut table = vec![("points", inside.len() as f64)];
-    let unit: Vec<DVec2> = inside.iter().map(|p| (*p - window.min) / window.size).collect();
-    if let Some(Bounds { lower, upper }) = discrepancy::star(&unit) {
-        if lower == upper {
-            table.push(("star discrepancy", lower));
-        } else {
-            table.push(("star discrepancy at least", lower));
-            table.push(("star discrepancy at most", upper));
-        }
+    let unit: Vec<DVec2> = inside.iter().map(|p| (*p - window.min()) / window.size()).collect();
+    let Bounds { lower, upper } = discrepancy::star(&unit)?;
+    if lower == upper {
+        table.push(("star discrepancy", lower));
+    } else {
+        table.push(("star discrepancy at least", lower));
+        table.push(("star discrepancy at most", upper));
     }
-    if let Some(l2) = discrepancy::l2_star(&unit) {
-        table.push(("L2 star discrepancy", l2));
-    }
+    table.push(("L2 star discrepancy", discrepancy::l2_star(&unit)?));
     let hexagonal = hexagonal_distance(inside.len() as f64 / window.area());
-    let distances = nearest::distances(points, inside).iter().map(|d| d / hexagonal).collect();
-    if let Some(summary) = Summary::new(distances) {
-        table.push(("nearest least", summary.least()));
-        table.push(("nearest 1 %", summary.percentile(0.01)));
-        table.push(("nearest mean", summary.mean()));
-    }
+    let distances = nearest::distances(points, inside)?.iter().map(|d| d / hexagonal).collect();
+    let summary = Summary::new(distances)?;
+    table.push(("nearest least", summary.least()));
+    table.push(("nearest 1 %", summary.percentile(0.01)));
+    table.push(("nearest mean", summary.mean()));
+    // Short lists and narrow windows have none.
     if inside.len() <= SPECTRUM_LIMIT
-        && let Some(power) = spectrum::low_frequency_power(points, window)
+        && let Ok(power) = spectrum::low_frequency_power(points, window)
     {
         table.push(("low-frequency power", power));
     }
-    table
+    Ok(table)
 }
 
 /// Writes a file as a whole, or standard output for `-`.

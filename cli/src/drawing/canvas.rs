@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glam::DVec2;
+
 use super::coverage::{Disc, FULL, Stamp};
 
 /// Places within a pixel, each way, at which discs are kept ready: a dot moves by at most a 32nd of a
@@ -69,6 +71,43 @@ impl Canvas {
                 *pixel = pixel.saturating_add((area * f64::from(FULL)).round() as u16);
             }
         }
+    }
+
+    /// Draws a line of the dots' radius from one place to another. A line that goes on where another ends is
+    /// as if both were one: what both cover is covered once.
+    pub(super) fn line(&mut self, [from, to]: [DVec2; 2]) {
+        let reach = self.radius + 1.0;
+        let (low, high) = (from.min(to), from.max(to));
+        let along = to - from;
+        let squared = along.length_squared();
+        for row in span(0.5 * (low.y + high.y), 0.5 * (high.y - low.y) + reach, self.height) {
+            // The part of the line near this row, for long lines that lie aslant.
+            let [first, last] = if along.y == 0.0 {
+                [low.x, high.x]
+            } else {
+                let x_at = |y: f64| from.x + along.x * ((y - from.y) / along.y).clamp(0.0, 1.0);
+                let y = row as f64 + 0.5;
+                [x_at(y - reach), x_at(y + reach)]
+            };
+            let (left, right) = (first.min(last), first.max(last));
+            let columns = span(0.5 * (left + right), 0.5 * (right - left) + reach, self.width);
+            let pixels = &mut self.ink[row * self.width..][columns.clone()];
+            for (pixel, column) in pixels.iter_mut().zip(columns) {
+                let away = DVec2::new(column as f64, row as f64) + 0.5 - from;
+                let part =
+                    if squared > 0.0 { (away.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+                let distance = (away - part * along).length();
+                // What a straight border at this distance leaves of a pixel; thin lines cover their width.
+                let inside = (distance + 0.5).min(self.radius) - (distance - 0.5).max(-self.radius);
+                let ink = (inside.clamp(0.0, 1.0) * f64::from(FULL)).round() as u16;
+                *pixel = (*pixel).max(ink);
+            }
+        }
+    }
+
+    /// Removes all ink.
+    pub(super) fn clear(&mut self) {
+        self.ink.fill(0);
     }
 
     /// Rows from the top, each with its pixels' ink from 0 to [`FULL`].
@@ -163,6 +202,27 @@ mod tests {
         let mut canvas = Canvas::new(100, 50, 1e6).unwrap();
         canvas.dot(99.0, 1.0);
         assert!(canvas.ink.iter().all(|&units| units == FULL));
+    }
+
+    #[test]
+    fn lines_leave_their_area_of_ink_in_any_direction() {
+        for radius in [0.2, 0.8, 3.0] {
+            for to in [[90.0, 10.5], [60.0, 70.0], [10.0, 90.0], [35.0, 11.0]] {
+                let from = DVec2::new(10.0, 10.5);
+                let to = DVec2::from_array(to);
+                let mut canvas = Canvas::new(100, 100, radius).unwrap();
+                canvas.line([from, 0.5 * (from + to)]);
+                canvas.line([0.5 * (from + to), to]);
+                canvas.line([to, from]);
+                let area =
+                    2.0 * radius * from.distance(to) + std::f64::consts::PI * radius * radius;
+                assert!(
+                    (ink(&canvas) / area - 1.0).abs() < 0.03,
+                    "{radius} {to}: {}",
+                    ink(&canvas)
+                );
+            }
+        }
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use std::io::{self, BufWriter, Write};
 
-use super::Drawing;
+use glam::DVec2;
+
+use super::{Drawing, Layer};
 
 /// Lines `x,y` after a header that says so. Coordinates are the shortest decimals that read back as
 /// the same 32-bit floats.
@@ -25,16 +27,20 @@ impl<W: Write> Csv<W> {
 }
 
 impl<W: Write> Drawing for Csv<W> {
-    fn dot(&mut self, x: f32, y: f32) -> io::Result<()> {
+    fn layer(&mut self, _: &Layer) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn dot(&mut self, at: DVec2) -> io::Result<()> {
         // Formatted by the standard library, a point would take longer than it takes to place it.
-        let (x, y) = (self.x.format(x), self.y.format(y));
+        let (x, y) = (self.x.format(at.x as f32), self.y.format(at.y as f32));
         for part in [x, ",", y, "\n"] {
             self.out.write_all(part.as_bytes())?;
         }
         Ok(())
     }
 
-    fn finish(mut self) -> io::Result<()> {
+    fn finish(mut self: Box<Self>) -> io::Result<()> {
         self.out.flush()
     }
 }
@@ -45,11 +51,11 @@ mod tests {
 
     #[test]
     fn coordinates_read_back_to_the_bit() {
-        let dots = [(0.0, 511.99997), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
+        let dots = [(0.0f32, 511.99997f32), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
         let mut bytes = Vec::new();
-        let mut csv = Csv::new(&mut bytes).unwrap();
+        let mut csv = Box::new(Csv::new(&mut bytes).unwrap());
         for (x, y) in dots {
-            csv.dot(x, y).unwrap();
+            csv.dot(DVec2::new(f64::from(x), f64::from(y))).unwrap();
         }
         csv.finish().unwrap();
         let text = String::from_utf8(bytes).unwrap();

@@ -11,7 +11,8 @@ use crate::{complaint_about, names, photograph, program, stipple};
 fn other_endings_are_refused_before_the_photograph_is_read() {
     for name in ["dots.jpg", "dots", "dots.svg.gz", ".svg"] {
         let output = stipple("/no/such/photograph".as_ref(), &["-o", name]);
-        assert_eq!(complaint_about(name, &output), "has none of the endings .svg, .png and .csv");
+        let expected = "has none of the endings .svg, .png, .pdf, .csv and .npy; see --format";
+        assert_eq!(complaint_about(name, &output), expected);
     }
 }
 
@@ -201,14 +202,20 @@ mod linux {
         let small = image::open(photograph()).unwrap();
         let large = small.resize_exact(4000, 4000, image::imageops::FilterType::Nearest);
         large.to_rgb8().save(&photo).unwrap();
-        for name in ["dots.csv", "dots.svg", "dots.png"] {
+        // Refined dots need a list of them, and some numbers a pixel more.
+        for (name, refine, kilobytes) in [
+            ("dots.csv", "0", 614_400),
+            ("dots.svg", "0", 614_400),
+            ("dots.png", "0", 614_400),
+            ("refined.svg", "1", 614_400),
+        ] {
             let target = folder.path().join(name);
             let output = Command::new("sh")
-                .args(["-c", "ulimit -v 409600 && exec \"$0\" \"$@\""])
+                .args(["-c", &format!("ulimit -v {kilobytes} && exec \"$0\" \"$@\"")])
                 .arg(env!("CARGO_BIN_EXE_twelvefold"))
                 .arg("stipple")
                 .arg(&photo)
-                .args(["--points", "1000000", "-o", target.to_str().unwrap()])
+                .args(["--points", "1000000", "--refine", refine, "-o", target.to_str().unwrap()])
                 .output()
                 .unwrap();
             assert!(output.status.success(), "{output:?}");

@@ -41,6 +41,30 @@ fn specimens() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn more_dots_than_memory_is_one_line_and_no_file() {
+    let folder = TempDir::new().unwrap();
+    let (name, bytes) = specimens().swap_remove(0);
+    let photo = written(&folder, name, &bytes);
+    // The list of the result does not fit; then that does, but not the candidates.
+    for (kilobytes, count) in [("350000", "10000000"), ("300000", "5000000")] {
+        let target = folder.path().join("dots.csv");
+        let output = std::process::Command::new("sh")
+            .args(["-c", "ulimit -v $0 && exec \"$@\"", kilobytes])
+            .arg(env!("CARGO_BIN_EXE_twelvefold"))
+            .arg("stipple")
+            .arg(&photo)
+            .args(["--exact", count, "--quiet", "-o"])
+            .arg(&target)
+            .output()
+            .unwrap();
+        let complaint = complaint_about(photo.to_str().unwrap(), &output);
+        assert!(complaint.contains("bytes of memory"), "{complaint}");
+        assert_eq!(crate::names(folder.path()), [name]);
+    }
+}
+
+#[test]
 fn a_file_that_ends_early_is_an_error_wherever_it_ends() {
     let folder = TempDir::new().unwrap();
     for (name, whole) in specimens() {
@@ -180,8 +204,9 @@ fn what_is_no_photograph_says_so() {
     let missing = folder.path().join("missing.png");
     assert!(complaint(&missing, &[]).starts_with("cannot be read: "));
     assert_eq!(complaint(folder.path(), &[]), "is not a regular file");
-    let unknown = "is not a PNG, JPEG, TIFF, Radiance HDR or OpenEXR file";
-    for bytes in [&b""[..], b"x", b"GIF89a..........", b"\x89PNG"] {
+    let unknown = "is not a PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa, QOI, farbfeld, \
+                   Radiance HDR or OpenEXR file";
+    for bytes in [&b""[..], b"x", b"GIF80a..........", b"\x89PNG"] {
         assert_eq!(complaint(&written(&folder, "strange.png", bytes), &[]), unknown);
     }
     if cfg!(unix) {

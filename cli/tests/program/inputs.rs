@@ -40,7 +40,7 @@ fn light(level: u8) -> f32 {
 }
 
 /// Fixed centres: a pixel that differs moves no dot but its own.
-const POINTS: &[&str] = &["--points", "2000", "--centres", "fixed"];
+const POINTS: &[&str] = &["--points", "2000", "--centers", "fixed", "--refine", "0"];
 
 /// The dots of the same picture as the plainest of files.
 fn reference(folder: &Path) -> String {

@@ -5,6 +5,7 @@ mod hostile;
 mod inputs;
 mod measure;
 mod outputs;
+mod paper;
 mod tiling;
 
 use std::ffi::OsStr;
@@ -43,6 +44,47 @@ fn dots(csv: &str) -> Vec<(f32, f32)> {
             (x.parse().unwrap(), y.parse().unwrap())
         })
         .collect()
+}
+
+/// Where the strokes of a drawing begin: of each dot, or along a line.
+fn strokes(svg: &str) -> Vec<[f64; 2]> {
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let mut strokes = Vec::new();
+    for path in document.descendants().filter_map(|node| node.attribute("d")) {
+        let mut pen = [0.0; 2];
+        let commands = path.match_indices(|c: char| c.is_ascii_alphabetic()).map(|(at, _)| at);
+        let ends = commands.clone().skip(1).chain([path.len()]);
+        for (start, end) in commands.zip(ends) {
+            let numbers = numbers(&path[start + 1..end]);
+            match &path[start..=start] {
+                "M" | "m" | "l" => {
+                    for step in numbers.chunks_exact(2) {
+                        pen = [pen[0] + step[0], pen[1] + step[1]];
+                        strokes.push(pen);
+                    }
+                }
+                "h" => pen[0] += numbers[0],
+                // Half a circle, there and back.
+                "a" => pen[0] += numbers[5],
+                other => panic!("{other}"),
+            }
+        }
+    }
+    strokes
+}
+
+/// Numbers as SVG has them: a minus or a second point begins another.
+fn numbers(text: &str) -> Vec<f64> {
+    let mut words: Vec<String> = vec![String::new()];
+    for character in text.chars() {
+        match words.last_mut() {
+            Some(word) if character.is_ascii_digit() => word.push(character),
+            Some(word) if character == '.' && !word.contains('.') => word.push(character),
+            _ if character.is_whitespace() => words.push(String::new()),
+            _ => words.push(character.to_string()),
+        }
+    }
+    words.iter().filter(|word| !word.is_empty()).map(|word| word.parse().unwrap()).collect()
 }
 
 /// What a run that must fail says: one line, which begins with the program and `subject`.

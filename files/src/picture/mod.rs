@@ -1,23 +1,37 @@
 //! Reading a photograph into importance: format by content, memory by header, tone by option.
 
+mod aspect;
+#[cfg(test)]
+mod cases;
+mod cicp;
+mod color;
+mod exif;
+mod format;
+mod jpeg;
 mod limits;
 mod openexr;
+mod pfm;
 mod plane;
+mod png;
 mod radiance;
 mod raster;
+mod source;
 pub mod srgb;
 mod tiff;
 mod tone;
 
 use std::error::Error;
 use std::fmt;
-use std::fs::{self, File};
-use std::io::{self, BufReader, Read as _, Seek as _};
+use std::io;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 
-pub use radiance::{Radiance, read_radiance};
-pub use tone::Tone;
+pub use format::Format;
+pub use tone::{Levels, Tone};
+
+use plane::Decoded;
+use source::Source;
+use tone::{Alpha, Colors, Pixel, Sample, Toner};
 
 /// How many dots each pixel of a photograph deserves.
 #[derive(Debug)]
@@ -28,6 +42,37 @@ pub struct Picture {
     pub height: usize,
     /// Importance in 0..=1, row by row from the top, each row from the left.
     pub importance: Vec<f32>,
+    /// The least and greatest brightness of a float file's pixels, before exposure and clipping.
+    pub range: Option<(f64, f64)>,
+    /// What was assumed or amiss, each a sentence's end that follows the file's name.
+    pub warnings: Vec<String>,
+}
+
+/// The colours of a photograph.
+#[derive(Debug)]
+pub struct ColorPicture {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// Linear sRGB light of the covered part, at least 0 (1 is white), and the part that is covered;
+    /// row by row from the top, each row from the left.
+    pub pixels: Vec<[f32; 4]>,
+    /// As of [`Picture`].
+    pub warnings: Vec<String>,
+}
+
+/// Linear red, green and blue, row by row from the top, each row from the left.
+#[derive(Debug, Default)]
+pub struct Radiance {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// `width` · `height` pixels. Any float: what to do with NaN and negative ones is for the caller.
+    pub pixels: Vec<[f32; 3]>,
+    /// As of [`Picture`].
+    pub warnings: Vec<String>,
 }
 
 impl Picture {
@@ -39,46 +84,6 @@ impl Picture {
     }
 }
 
-/// The formats read, told apart by their first bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    Png,
-    Jpeg,
-    Tiff,
-    Hdr,
-    OpenExr,
-}
-
-impl Format {
-    /// The format of a file that begins with `start`.
-    fn of(start: &[u8]) -> Option<Self> {
-        const SIGNATURES: [(&[u8], Format); 9] = [
-            (b"\x89PNG\r\n\x1a\n", Format::Png),
-            (b"\xff\xd8\xff", Format::Jpeg),
-            (b"II*\0", Format::Tiff),
-            (b"MM\0*", Format::Tiff),
-            (b"II+\0", Format::Tiff),
-            (b"MM\0+", Format::Tiff),
-            (b"#?RADIANCE", Format::Hdr),
-            (b"#?RGBE", Format::Hdr),
-            (b"\x76\x2f\x31\x01", Format::OpenExr),
-        ];
-        SIGNATURES.iter().find(|(signature, _)| start.starts_with(signature)).map(|&(_, f)| f)
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Self::Png => "PNG",
-            Self::Jpeg => "JPEG",
-            Self::Tiff => "TIFF",
-            Self::Hdr => "Radiance HDR",
-            Self::OpenExr => "OpenEXR",
-        })
-    }
-}
-
 /// Why a photograph cannot be read.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -87,8 +92,16 @@ pub enum PictureError {
     Io(io::Error),
     /// A folder, a device or a pipe.
     NotAFile,
-    /// The first bytes are those of no format read here.
+    /// The first bytes are those of no format known here.
     UnknownFormat,
+    /// A format that is known by name only, and what can be done about it.
+    Foreign { name: &'static str, advice: &'static str },
+    /// An environment map of another shape than latitude by longitude.
+    NotLatitudeLongitude(&'static str),
+    /// An exposure was asked for, of a file that holds no light.
+    NoExposure(Format),
+    /// A layer was asked for, of a format that has none.
+    NoLayers(Format),
     /// The file is longer than the memory limit.
     TooLong { bytes: u64 },
     /// The header asks for more memory than the limit; `bytes` is `None` past 64 bits.
@@ -111,9 +124,24 @@ impl fmt::Display for PictureError {
         match self {
             Self::Io(error) => write!(out, "cannot be read: {error}"),
             Self::NotAFile => out.write_str("is not a regular file"),
-            Self::UnknownFormat => {
-                out.write_str("is not a PNG, JPEG, TIFF, Radiance HDR or OpenEXR file")
+            Self::UnknownFormat => out.write_str(
+                "is not a PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa, QOI, farbfeld, \
+                 Radiance HDR or OpenEXR file",
+            ),
+            Self::Foreign { name, advice } => {
+                write!(out, "is {name} file, which is not read; {advice}")
             }
+            Self::NotLatitudeLongitude(shape) => write!(
+                out,
+                "is {shape}, not a latitude-longitude map, which is twice as wide as high; \
+                 convert it first"
+            ),
+            Self::NoExposure(format) => write!(
+                out,
+                "is a {format} file of integers, which hold tones and no light to expose; \
+                 --gamma and --white change its tones"
+            ),
+            Self::NoLayers(format) => write!(out, "is a {format} file, which has no named layers"),
             Self::TooLong { bytes } => write!(
                 out,
                 "is {} MiB long, more than the limit of {} MiB",
@@ -130,7 +158,7 @@ impl fmt::Display for PictureError {
             }
             Self::NotRadiance(format) => write!(
                 out,
-                "is a {format} file, which holds no radiance; Radiance HDR and OpenEXR files do"
+                "is a {format} file, which holds no radiance; Radiance HDR, OpenEXR, PFM and float TIFF files do"
             ),
             Self::Empty => out.write_str("has no pixels"),
             Self::Truncated(format) => write!(out, "is a {format} file that ends early"),
@@ -158,41 +186,111 @@ impl From<io::Error> for PictureError {
     }
 }
 
-/// Reads the photograph at `path`, upright, as importance.
+/// What is wanted of a file.
+#[derive(Clone, Copy)]
+struct Wanted<'a> {
+    tone: Tone,
+    layer: Option<&'a str>,
+    /// Light for an environment, rather than a picture.
+    radiance: bool,
+}
+
+/// Reads the photograph at `path`, or for `-` from standard input, upright and in shape, as importance.
 ///
-/// Transparent pixels are laid over white. In float files, negative values count as zero and values
-/// above one as white. Takes at most [`limits::MEMORY_LIMIT`] bytes for pixels.
+/// Transparent pixels deserve no dots. In float files, negative values count as zero and values
+/// above one as white. Takes at most 1 GiB for pixels.
 ///
 /// # Errors
 /// [`PictureError`].
 pub fn read(path: &Path, tone: Tone) -> Result<Picture, PictureError> {
-    let (format, file) = open(path)?;
-    caught(format, || match format {
-        Format::Png => raster::png(file, tone),
-        Format::Jpeg => raster::jpeg(file, tone),
-        Format::Hdr => raster::hdr(file, tone),
-        Format::Tiff => tiff::read(file, tone),
-        Format::OpenExr => openexr::read(file, tone),
-    })
+    read_layer(path, tone, None)
 }
 
-/// Opens the file at `path` and tells its format; the reader stands at its start.
-fn open(path: &Path) -> Result<(Format, BufReader<File>), PictureError> {
-    // Opening a pipe would wait for somebody to write to it.
-    let metadata = fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(PictureError::NotAFile);
+/// Reads a photograph as [`read`] does, of an OpenEXR file the layer of this name.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn read_layer(path: &Path, tone: Tone, layer: Option<&str>) -> Result<Picture, PictureError> {
+    let decoded = decode(path, Wanted { tone, layer, radiance: false })?;
+    let Decoded { width, height, pixels, range, warnings, .. } = decoded;
+    let mut importance: Vec<f32> = pixels;
+    // Resampling rounds.
+    importance.iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
+    Ok(Picture { width, height, importance, range, warnings })
+}
+
+/// Reads the colours of a photograph, upright and in shape; of `tone` only the exposure counts.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn read_color(
+    path: &Path,
+    tone: Tone,
+    layer: Option<&str>,
+) -> Result<ColorPicture, PictureError> {
+    let tone = Tone { linear: true, exposure: tone.exposure, ..Tone::default() };
+    let decoded = decode(path, Wanted { tone, layer, radiance: false })?;
+    let Decoded { width, height, pixels, warnings, .. } = decoded;
+    Ok(ColorPicture { width, height, pixels, warnings })
+}
+
+/// Reads the radiance of the environment map at `path`: Radiance HDR, OpenEXR, PFM or float TIFF.
+///
+/// # Errors
+/// [`PictureError`]; [`PictureError::NotRadiance`] for formats that hold tones for a display, and
+/// [`PictureError::NotLatitudeLongitude`] for what says or looks that it is a cube.
+pub fn read_radiance(path: &Path) -> Result<Radiance, PictureError> {
+    let wanted = Wanted { tone: Tone::default(), layer: None, radiance: true };
+    let Decoded { width, height, pixels, warnings, .. } = decode(path, wanted)?;
+    let shape = |across: usize, down: usize| width * down == height * across;
+    // A map of a few pixels may be cut to any shape; a cube's faces are larger.
+    let cube = [
+        ((1, 1), "square"),
+        ((6, 1), "a row of the six faces of a cube"),
+        ((1, 6), "a column of the six faces of a cube"),
+        ((4, 3), "a cross of the six faces of a cube"),
+        ((3, 4), "a cross of the six faces of a cube"),
+    ];
+    let found = cube.iter().find(|&&((across, down), _)| height > 1 && shape(across, down));
+    if let Some(&(_, shape)) = found {
+        return Err(PictureError::NotLatitudeLongitude(shape));
     }
-    // Some decoders hold the whole file, or a header as long as the file.
-    if metadata.len() > limits::MEMORY_LIMIT {
-        return Err(PictureError::TooLong { bytes: metadata.len() });
+    Ok(Radiance { width, height, pixels, warnings })
+}
+
+/// Reads the file at `path`.
+fn decode<P: Pixel>(path: &Path, wanted: Wanted<'_>) -> Result<Decoded<P>, PictureError> {
+    let mut source = Source::open(path)?;
+    let format = Format::detect(&mut source, path)?;
+    let float = matches!(format, Format::Hdr | Format::OpenExr | Format::Pfm | Format::Tiff);
+    if wanted.radiance && !float {
+        return Err(PictureError::NotRadiance(format));
     }
-    let mut file = BufReader::new(File::open(path)?);
-    let mut start = Vec::with_capacity(16);
-    file.by_ref().take(16).read_to_end(&mut start)?;
-    file.rewind()?;
-    let format = Format::of(&start).ok_or(PictureError::UnknownFormat)?;
-    Ok((format, file))
+    if wanted.tone.exposure.is_some() && !float {
+        return Err(PictureError::NoExposure(format));
+    }
+    if wanted.layer.is_some() && format != Format::OpenExr {
+        return Err(PictureError::NoLayers(format));
+    }
+    let decoded = caught(format, || match format {
+        Format::Png => png::read(source, wanted),
+        Format::Jpeg => jpeg::read(source, wanted),
+        Format::Hdr => radiance::read(source, wanted),
+        Format::Pfm => pfm::read(source, wanted),
+        Format::Tiff => tiff::read(source, wanted),
+        Format::OpenExr => openexr::read(source, wanted),
+        other => raster::read(other, source, wanted),
+    })?;
+    // Directions have no shape of pixels.
+    if wanted.radiance { Ok(decoded) } else { aspect::squared(decoded) }
+}
+
+/// The error of a read that failed, which may be that the file ended.
+fn ended(error: io::Error, format: Format) -> PictureError {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => PictureError::Truncated(format),
+        _ => PictureError::Io(error),
+    }
 }
 
 /// Runs a decoder; if it panics on a malformed file, that is an error like any other.
@@ -215,18 +313,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_are_known_by_their_first_bytes() {
-        assert_eq!(Format::of(b"\x89PNG\r\n\x1a\n...."), Some(Format::Png));
-        assert_eq!(Format::of(b"#?RGBE\n"), Some(Format::Hdr));
-        assert_eq!(Format::of(b"MM\0*"), Some(Format::Tiff));
-        for none in [&b""[..], b"\x89PN", b"GIF89a", b"P5 1 1 255"] {
-            assert_eq!(Format::of(none), None);
-        }
-    }
-
-    #[test]
     fn the_total_of_a_large_plane_is_exact_to_a_pixel() {
-        let picture = Picture { width: 3000, height: 3000, importance: vec![0.1; 9_000_000] };
+        let picture = Picture {
+            width: 3000,
+            height: 3000,
+            importance: vec![0.1; 9_000_000],
+            range: None,
+            warnings: Vec::new(),
+        };
         assert!((picture.total() - 900_000.0).abs() < 0.1);
     }
 }

@@ -1,121 +1,61 @@
 //! OpenEXR: the first layer with red, green and blue, or else with luminance, block by block.
 
-use std::fs::File;
-use std::io::BufReader;
+use std::io::Seek as _;
 
 use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader as _;
 use exr::block::{self, UncompressedBlock};
 use exr::error::{Error as ExrError, UnitResult};
-use exr::meta::attribute::{ChannelDescription, SampleType};
+use exr::meta::attribute::{ChannelDescription, EnvironmentMap, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Text, f16};
 use image::metadata::Orientation;
 
-use super::plane::Plane;
-use super::tone::{Alpha, Colors, Tone, Toner};
-use super::{Format, Picture, PictureError, Radiance, limits};
+use super::color::Space;
+use super::plane::{Decoded, Plane};
+use super::source::Source;
+use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, limits};
 
 /// Red, green, blue and alpha, or luminance and alpha, as far as a layer has them.
-type Pixel = [f32; 4];
+type Samples = [f32; 4];
 
-/// What the pixels of a file go into.
-trait Canvas {
-    /// Told once, before the first pixel: the size of the display window.
-    fn begin(
-        &mut self,
-        size: (usize, usize),
-        colors: Colors,
-        alpha: Alpha,
-    ) -> Result<(), PictureError>;
-    /// A pixel inside the display window.
-    fn put(&mut self, x: usize, y: usize, pixel: &Pixel);
-}
-
-/// A photograph's importance being filled.
-struct Photograph {
-    tone: Tone,
-    filling: Option<(Toner, Plane)>,
-}
-
-impl Canvas for Photograph {
-    fn begin(
-        &mut self,
-        size: (usize, usize),
-        colors: Colors,
-        alpha: Alpha,
-    ) -> Result<(), PictureError> {
-        let toner = Toner::new::<f32>(self.tone, colors, alpha);
-        let background = toner.importance(&Pixel::default()).unwrap_or(0.0);
-        let plane = Plane::new(size, Orientation::NoTransforms, background)?;
-        self.filling = Some((toner, plane));
-        Ok(())
-    }
-
-    fn put(&mut self, x: usize, y: usize, pixel: &Pixel) {
-        if let Some((toner, plane)) = &mut self.filling {
-            plane.set(x, y, toner.importance(pixel));
-        }
-    }
-}
-
-/// Radiance being filled, as stored.
-#[derive(Default)]
-struct Light {
-    colors: Option<Colors>,
-    radiance: Radiance,
-}
-
-impl Canvas for Light {
-    fn begin(
-        &mut self,
-        (width, height): (usize, usize),
-        colors: Colors,
-        _: Alpha,
-    ) -> Result<(), PictureError> {
-        self.colors = Some(colors);
-        self.radiance = Radiance::black(width, height)?;
-        Ok(())
-    }
-
-    fn put(&mut self, x: usize, y: usize, [red, green, blue, _]: &Pixel) {
-        let color = match self.colors {
-            Some(Colors::Gray) => [*red; 3],
-            _ => [*red, *green, *blue],
-        };
-        self.radiance.pixels[y * self.radiance.width + x] = color;
-    }
-}
+/// What [`Layer::slots`] says of an alpha channel, which follows the colours there are.
+const ALPHA: usize = 3;
 
 /// Reads an OpenEXR file. The picture is the display window; where the layer does not reach it is
 /// transparent if the layer has alpha, and black if not.
-pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
-    let mut photograph = Photograph { tone, filling: None };
-    read_into(file, &mut photograph)?;
-    match photograph.filling {
-        Some((_, plane)) => plane.finish(),
-        None => Err(PictureError::Empty),
+pub(super) fn read<P: Pixel>(
+    mut source: Source,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
+    source.rewind()?;
+    let file = block::read(source, false).map_err(failure)?;
+    let layer = Layer::choose(file.headers(), wanted.layer)?;
+    let (index, header) = (layer.index, layer.header);
+    if wanted.radiance && header.own_attributes.environment_map == Some(EnvironmentMap::Cube) {
+        return Err(PictureError::NotLatitudeLongitude("the six faces of a cube"));
     }
-}
-
-/// Reads the radiance in an OpenEXR file over its display window, alpha aside; black where the layer
-/// does not reach.
-pub(super) fn read_radiance(file: BufReader<File>) -> Result<Radiance, PictureError> {
-    let mut light = Light::default();
-    read_into(file, &mut light)?;
-    Ok(light.radiance)
-}
-
-fn read_into(file: BufReader<File>, canvas: &mut impl Canvas) -> Result<(), PictureError> {
-    let file = block::read(file, false).map_err(failure)?;
-    let (index, header, colors) = layer(file.headers())?;
-    let alpha = if has(header, "A") { Alpha::Associated } else { Alpha::None };
+    let colors = layer.colors;
+    let alpha = if layer.slots.contains(&Some(ALPHA)) { Alpha::Associated } else { Alpha::None };
 
     let window = header.shared_attributes.display_window;
     // A block may be as large as the layer, which may be larger than the picture.
-    limits::check(header.layer_size.0, header.layer_size.1, header.channels.bytes_per_pixel)?;
+    let bytes = header.channels.bytes_per_pixel + size_of::<P>() - size_of::<f32>();
+    limits::check(header.layer_size.0, header.layer_size.1, bytes)?;
     let size = (window.size.0, window.size.1);
-    canvas.begin(size, colors, alpha)?;
+    let space = match &header.shared_attributes.chromaticities {
+        Some(of) if colors == Colors::Rgb => {
+            let points = [of.white, of.red, of.green, of.blue];
+            Space::default()
+                .with_primaries(&points.map(|point| [f64::from(point.0), f64::from(point.1)]))
+        }
+        _ => Space::default(),
+    };
+    let toner = Toner::new::<f32>(wanted.tone, colors, alpha, space);
+    let background = P::of(&toner, &Samples::default()).unwrap_or(P::NOTHING);
+    let toner = Toner::new::<f32>(wanted.tone, colors, alpha, toner.into_space());
+    let mut plane = Plane::new(size, Orientation::NoTransforms, background)?;
+    plane.set_aspect(f64::from(header.shared_attributes.pixel_aspect));
 
     // Blocks are placed from the layer's corner. Both corners are 32-bit, so their difference fits.
     let corner = header.own_attributes.layer_position;
@@ -125,8 +65,9 @@ fn read_into(file: BufReader<File>, canvas: &mut impl Canvas) -> Result<(), Pict
         let place = usize::try_from(i64::try_from(position).ok()? + shift).ok()?;
         (place < length).then_some(place)
     };
+    let slots = layer.slots;
 
-    let mut row: Vec<Pixel> = Vec::new();
+    let mut row: Vec<Samples> = Vec::new();
     let chunks = file
         .filter_chunks(false, |_, tile, block| {
             block.layer == index && tile.is_largest_resolution_level()
@@ -136,12 +77,14 @@ fn read_into(file: BufReader<File>, canvas: &mut impl Canvas) -> Result<(), Pict
         .decompress_sequential(false, |meta, block: UncompressedBlock| -> UnitResult {
             let Some(header) = meta.headers.get(index) else { return Ok(()) };
             row.clear();
-            row.resize(block.index.pixel_size.0, Pixel::default());
+            row.resize(block.index.pixel_size.0, Samples::default());
             // Each row of pixels comes as one line a channel, in the order of the channels.
             for line in block.lines(&header.channels) {
                 let channels = &header.channels.list;
                 let Some(channel) = channels.get(line.location.channel) else { continue };
-                if let Some(slot) = slot(channel, colors) {
+                if let Some(&Some(slot)) = slots.get(line.location.channel) {
+                    // Behind the luminance alone, or behind the three colours.
+                    let slot = if slot == ALPHA { colors.count() } else { slot };
                     take(&mut row, slot, channel, &line)?;
                 }
                 if line.location.channel + 1 < channels.len() {
@@ -150,19 +93,19 @@ fn read_into(file: BufReader<File>, canvas: &mut impl Canvas) -> Result<(), Pict
                 let Some(y) = inside(line.location.position.1, shift_y, size.1) else { continue };
                 for (offset, pixel) in row.iter().enumerate() {
                     if let Some(x) = inside(line.location.position.0 + offset, shift_x, size.0) {
-                        canvas.put(x, y, pixel);
+                        plane.set(x, y, P::of(&toner, pixel));
                     }
                 }
             }
             Ok(())
         })
         .map_err(failure)?;
-    Ok(())
+    plane.finish(Some(&toner))
 }
 
 /// Copies one channel of one row of pixels into place.
 fn take(
-    row: &mut [Pixel],
+    row: &mut [Samples],
     slot: usize,
     channel: &ChannelDescription,
     line: &LineRef<'_>,
@@ -187,39 +130,99 @@ fn take(
     Ok(())
 }
 
-/// Where in a [`Pixel`] the samples of `channel` belong, if anywhere.
-fn slot(channel: &ChannelDescription, colors: Colors) -> Option<usize> {
-    let names: &[&str] = if colors == Colors::Gray { &["Y", "A"] } else { &["R", "G", "B", "A"] };
-    names.iter().position(|&name| channel.name == *name)
+/// The channels to show, all of one part of the file.
+struct Layer<'a> {
+    index: usize,
+    header: &'a Header,
+    colors: Colors,
+    /// For each channel of the part, its place in [`Samples`], if any.
+    slots: Vec<Option<usize>>,
 }
 
-/// The layer to show, with its number and what its colours are.
-fn layer(headers: &[Header]) -> Result<(usize, &Header, Colors), PictureError> {
-    let find = |names: &[&str]| {
-        let shown = |header: &Header| !header.deep && names.iter().all(|name| has(header, name));
-        headers.iter().enumerate().find(|(_, header)| shown(header))
-    };
-    let found = find(&["R", "G", "B"])
-        .map(|found| (found, Colors::Rgb))
-        .or_else(|| find(&["Y"]).map(|found| (found, Colors::Gray)));
-    let Some(((index, header), colors)) = found else {
+impl<'a> Layer<'a> {
+    /// The layer called `name`; or the first without a name that has colours or luminance, or else the
+    /// only one that has.
+    fn choose(headers: &'a [Header], name: Option<&str>) -> Result<Self, PictureError> {
+        let mut found: Vec<(String, Self)> = Vec::new();
+        let mut prefixes: Vec<String> = Vec::new();
+        for (index, header) in headers.iter().enumerate().filter(|(_, header)| !header.deep) {
+            prefixes.clear();
+            for channel in &header.channels.list {
+                let full = channel.name.to_string();
+                let prefix = full.rsplit_once('.').map_or("", |(prefix, _)| prefix).to_owned();
+                if !prefixes.contains(&prefix) {
+                    prefixes.push(prefix);
+                }
+            }
+            for prefix in &prefixes {
+                for colors in [Colors::Rgb, Colors::Gray] {
+                    let Some(slots) = slots(header, prefix, colors) else { continue };
+                    let part = header.own_attributes.layer_name.as_ref().map(Text::to_string);
+                    let name = match (part, prefix.is_empty()) {
+                        (Some(part), true) => part,
+                        (Some(part), false) if headers.len() > 1 => format!("{part}.{prefix}"),
+                        _ => prefix.clone(),
+                    };
+                    found.push((name, Self { index, header, colors, slots }));
+                    break;
+                }
+            }
+        }
+        let names = found.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(", ");
+        if let Some(wanted) = name {
+            return match found.into_iter().find(|(name, _)| name == wanted) {
+                Some((_, layer)) => Ok(layer),
+                None => Err(unsupported(&format!(
+                    "no layer with colours is called {wanted}; there are {names}"
+                ))),
+            };
+        }
+        // Colours that stand alone go before luminance, as before all that have a name.
+        let plain = |layer: &Self, colors| {
+            layer.colors == colors
+                && layer.slots.iter().zip(&layer.header.channels.list).any(|(slot, channel)| {
+                    slot.is_some() && !channel.name.to_string().contains('.')
+                })
+        };
+        for colors in [Colors::Rgb, Colors::Gray] {
+            if let Some(place) = found.iter().position(|(_, layer)| plain(layer, colors)) {
+                return Ok(found.swap_remove(place).1);
+            }
+        }
+        for colors in [Colors::Rgb, Colors::Gray] {
+            let mut of = found.iter().enumerate().filter(|(_, (_, layer))| layer.colors == colors);
+            match (of.next(), of.next()) {
+                (Some((place, _)), None) => return Ok(found.swap_remove(place).1),
+                (Some(_), Some(_)) => {
+                    return Err(unsupported(&format!(
+                        "there are several layers; choose one by --layer: {names}"
+                    )));
+                }
+                _ => {}
+            }
+        }
         let channels = headers.iter().flat_map(|header| &header.channels.list);
         let names: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
-        return Err(unsupported(&format!(
+        Err(unsupported(&format!(
             "no flat layer has channels R, G and B, or Y; there are {}",
             names.join(", ")
-        )));
-    };
-    let subsampled =
-        |channel: &ChannelDescription| (channel.sampling.0, channel.sampling.1) != (1, 1);
-    if header.channels.list.iter().any(subsampled) {
-        return Err(unsupported("channels with fewer samples than pixels are not supported"));
+        )))
     }
-    Ok((index, header, colors))
 }
 
-fn has(header: &Header, channel: &str) -> bool {
-    header.channels.find_index_of_channel(&Text::from(channel)).is_some()
+/// Where the channels of a layer belong, if all that its colours need are there.
+fn slots(header: &Header, prefix: &str, colors: Colors) -> Option<Vec<Option<usize>>> {
+    let names: &[&str] = if colors == Colors::Gray { &["Y"] } else { &["R", "G", "B"] };
+    let of = |channel: &ChannelDescription| {
+        let full = channel.name.to_string();
+        let (before, name) = full.rsplit_once('.').unwrap_or(("", &full));
+        if before != prefix {
+            return None;
+        }
+        names.iter().position(|&n| n == name).or((name == "A").then_some(ALPHA))
+    };
+    let slots: Vec<_> = header.channels.list.iter().map(of).collect();
+    (0..names.len()).all(|slot| slots.contains(&Some(slot))).then_some(slots)
 }
 
 fn unsupported(reason: &str) -> PictureError {

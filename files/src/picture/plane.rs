@@ -1,14 +1,29 @@
-//! The importance of every pixel, filled in the order that a file holds them and stored upright.
+//! The pixels of a picture, filled in the order that a file holds them and stored upright.
 
 use image::metadata::Orientation;
 
-use super::{Picture, PictureError, limits};
+use super::{PictureError, Pixel, Toner, limits};
+
+/// A file's pixels, upright.
+#[derive(Debug)]
+pub(super) struct Decoded<P> {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// Row by row from the top, each row from the left.
+    pub(super) pixels: Vec<P>,
+    /// Width of a pixel over its height.
+    pub(super) aspect: f64,
+    /// As of [`super::Picture`].
+    pub(super) range: Option<(f64, f64)>,
+    pub(super) warnings: Vec<String>,
+}
 
 /// A picture being filled. Pixels are addressed as the file stores them, before the orientation that
 /// the file may ask for.
 #[derive(Debug)]
-pub(super) struct Plane {
-    picture: Picture,
+pub(super) struct Plane<P> {
+    picture: Decoded<P>,
+    turned: bool,
     /// Index of the stored pixel (0, 0), and the steps to the next in its row and its column.
     origin: isize,
     step_x: isize,
@@ -16,9 +31,9 @@ pub(super) struct Plane {
     not_finite: Option<(usize, usize)>,
 }
 
-impl Plane {
-    /// A plane for a file with `width` × `height` stored pixels, each of importance `background`
-    /// until it is set.
+impl<P: Pixel> Plane<P> {
+    /// A plane for a file with `width` × `height` stored pixels, each `background` until it is
+    /// set.
     ///
     /// # Errors
     /// [`PictureError::Empty`] without pixels, and [`PictureError::TooLarge`] beyond the memory limit
@@ -26,12 +41,13 @@ impl Plane {
     pub(super) fn new(
         (width, height): (usize, usize),
         orientation: Orientation,
-        background: f32,
+        background: P,
     ) -> Result<Self, PictureError> {
-        let count = limits::check(width, height, 0)?;
-        let mut importance = Vec::new();
-        importance.try_reserve_exact(count).map_err(|_| limits::too_large(width, height, 0))?;
-        importance.resize(count, background);
+        let bytes = size_of::<P>() - size_of::<f32>();
+        let count = limits::check(width, height, bytes)?;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| limits::too_large(width, height, bytes))?;
+        pixels.resize(count, background);
 
         let turned = matches!(
             orientation,
@@ -56,7 +72,15 @@ impl Plane {
             Orientation::Rotate270FlipH => (bottom + right, -row, -1),
         };
         Ok(Self {
-            picture: Picture { width: upright_width, height: upright_height, importance },
+            picture: Decoded {
+                width: upright_width,
+                height: upright_height,
+                pixels,
+                aspect: 1.0,
+                range: None,
+                warnings: Vec::new(),
+            },
+            turned,
             origin,
             step_x,
             step_y,
@@ -64,13 +88,13 @@ impl Plane {
         })
     }
 
-    /// Sets the importance of the stored pixel (x, y), which must lie in the plane; `None` marks a
+    /// Sets the stored pixel (x, y), which must lie in the plane; `None` marks a
     /// pixel that is not a finite number.
-    pub(super) fn set(&mut self, x: usize, y: usize, importance: Option<f32>) {
-        match importance {
-            Some(importance) => {
+    pub(super) fn set(&mut self, x: usize, y: usize, pixel: Option<P>) {
+        match pixel {
+            Some(pixel) => {
                 let index = self.origin + x as isize * self.step_x + y as isize * self.step_y;
-                self.picture.importance[index as usize] = importance;
+                self.picture.pixels[index as usize] = pixel;
             }
             None => {
                 let earlier = self.not_finite.is_none_or(|(u, v)| (y, x) < (v, u));
@@ -81,11 +105,24 @@ impl Plane {
         }
     }
 
-    /// The filled picture.
+    /// Says that a stored pixel is so many times as wide as high; what is no shape is passed over.
+    pub(super) fn set_aspect(&mut self, aspect: f64) {
+        if aspect.is_finite() && (1.0 / 64.0..=64.0).contains(&aspect) {
+            self.picture.aspect = if self.turned { 1.0 / aspect } else { aspect };
+        }
+    }
+
+    /// Adds what was assumed or amiss.
+    pub(super) fn warn(&mut self, warnings: impl IntoIterator<Item = String>) {
+        self.picture.warnings.extend(warnings);
+    }
+
+    /// The filled picture, with what `toner` saw.
     ///
     /// # Errors
     /// [`PictureError::NotFinite`] with the first marked pixel, in reading order.
-    pub(super) fn finish(self) -> Result<Picture, PictureError> {
+    pub(super) fn finish(mut self, toner: Option<&Toner>) -> Result<Decoded<P>, PictureError> {
+        self.picture.range = toner.and_then(Toner::range);
         match self.not_finite {
             Some((x, y)) => Err(PictureError::NotFinite { x, y }),
             None => Ok(self.picture),
@@ -108,7 +145,7 @@ mod tests {
             for (x, y, pixel) in stored.enumerate_pixels() {
                 plane.set(x as usize, y as usize, Some(f32::from(pixel.0[0])));
             }
-            let picture = plane.finish().unwrap();
+            let picture = plane.finish(None).unwrap();
             let mut upright = DynamicImage::ImageLuma8(stored.clone());
             upright.apply_orientation(orientation);
             assert_eq!(
@@ -117,16 +154,16 @@ mod tests {
             );
             let expected: Vec<f32> =
                 upright.pixels().map(|(_, _, pixel)| f32::from(pixel.0[0])).collect();
-            assert_eq!(picture.importance, expected, "orientation {tag}");
+            assert_eq!(picture.pixels, expected, "orientation {tag}");
         }
     }
 
     #[test]
     fn the_first_bad_pixel_in_reading_order_is_named() {
-        let mut plane = Plane::new((4, 4), Orientation::NoTransforms, 0.0).unwrap();
+        let mut plane = Plane::new((4, 4), Orientation::NoTransforms, 0.0f32).unwrap();
         for (x, y) in [(3, 2), (2, 1), (0, 2), (3, 1)] {
-            plane.set(x, y, None);
+            plane.set(x, y, None::<f32>);
         }
-        assert!(matches!(plane.finish(), Err(PictureError::NotFinite { x: 2, y: 1 })));
+        assert!(matches!(plane.finish(None), Err(PictureError::NotFinite { x: 2, y: 1 })));
     }
 }

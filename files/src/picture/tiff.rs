@@ -1,7 +1,6 @@
 //! TIFF: strips or tiles, chunky or planar, one at a time, so that a picture is never held twice.
 
-use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::{ErrorKind, Seek as _};
 
 use image::metadata::Orientation;
 use tiff::ColorType;
@@ -9,9 +8,11 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult};
 
-use super::plane::Plane;
-use super::tone::{Alpha, Colors, Sample, Tone, Toner};
-use super::{Format, Picture, PictureError, limits};
+use super::color::{self, Space};
+use super::plane::{Decoded, Plane};
+use super::raster::warned;
+use super::source::Source;
+use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Toner, Wanted, limits};
 
 /// The most bytes of one strip or tile, decoded; some writers make the whole picture one strip.
 const CHUNK_LIMIT: usize = limits::MEMORY_LIMIT as usize;
@@ -21,20 +22,71 @@ const ASSOCIATED_ALPHA: u16 = 1;
 const UNASSOCIATED_ALPHA: u16 = 2;
 const PLANAR: u16 = 2;
 
-/// Reads the first picture of a TIFF file: gray, colour, CMYK or JPEG colour differences, 1 to 64 bits
-/// unsigned or 16 to 64 bits float, with or without alpha.
-pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, PictureError> {
+/// `NewSubfileType` bits of a page that is a smaller version of another, and of one that is a mask;
+/// `SubfileType`'s number for the former.
+const REDUCED: u32 = 1;
+const MASK: u32 = 4;
+const OLD_REDUCED: u32 = 2;
+
+/// Pages looked at.
+const MOST_PAGES: usize = 1000;
+
+/// Tags of camera files, whose pixels are not yet colours.
+const DNG_VERSION: u16 = 50706;
+
+/// Reads the largest page of a TIFF file that is not marked as a smaller version of another: gray,
+/// colour, CMYK or JPEG colour differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
+/// without alpha.
+pub(super) fn read<P: Pixel>(
+    mut source: Source,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
+    source.rewind()?;
     let mut decoder_limits = Limits::default();
     decoder_limits.decoding_buffer_size = CHUNK_LIMIT;
     decoder_limits.intermediate_buffer_size = CHUNK_LIMIT;
-    let mut decoder = Decoder::new(file).map_err(failure)?.with_limits(decoder_limits);
-    let file = Layout::of(&mut decoder)?;
-    let orientation = decoder
-        .find_tag_unsigned::<u8>(Tag::Orientation)
+    let mut decoder = Decoder::new(source).map_err(failure)?.with_limits(decoder_limits);
+    let camera = decoder.find_tag(Tag::from_u16_exhaustive(DNG_VERSION)).ok().flatten();
+    if camera.is_some() {
+        return Err(PictureError::Foreign {
+            name: "a DNG",
+            advice: "develop it to TIFF, PNG or JPEG first",
+        });
+    }
+    full_page(&mut decoder)?;
+    let file = Layout::of(&mut decoder, size_of::<P>() - size_of::<f32>())?;
+    let float = decoder
+        .find_tag_unsigned_vec::<u16>(Tag::SampleFormat)
         .map_err(failure)?
-        .and_then(Orientation::from_exif)
+        .is_some_and(|formats| formats.first() == Some(&3));
+    if wanted.radiance && !(float && matches!(file.colors, Colors::Gray | Colors::Rgb)) {
+        return Err(PictureError::NotRadiance(Format::Tiff));
+    }
+    if wanted.tone.exposure.is_some() && !float {
+        return Err(PictureError::NoExposure(Format::Tiff));
+    }
+    // Written as BYTE, SHORT or LONG; what is out of range turns nothing.
+    let orientation = decoder
+        .find_tag_unsigned::<u32>(Tag::Orientation)
+        .ok()
+        .flatten()
+        .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
         .unwrap_or(Orientation::NoTransforms);
-    let mut plane = Plane::new((file.width, file.height), orientation, 0.0)?;
+    let mut warnings = Vec::new();
+    let profile = decoder.find_tag(Tag::IccProfile).ok().flatten();
+    let space = match profile.and_then(|value| value.into_u8_vec().ok()) {
+        None => Space::default(),
+        Some(profile) => {
+            let found = color::profile(&profile, file.colors.count());
+            warned("its colour profile", found, &mut warnings)
+        }
+    };
+    let mut plane = Plane::new((file.width, file.height), orientation, P::NOTHING)?;
+    let mut density = |tag| decoder.find_tag(tag).ok().flatten().and_then(ratio);
+    if let (Some(across), Some(down)) = (density(Tag::XResolution), density(Tag::YResolution)) {
+        plane.set_aspect(down / across);
+    }
+    plane.warn(warnings);
 
     let mut toner = None;
     for region in file.regions() {
@@ -54,16 +106,18 @@ pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, Picture
                     })
                     .collect();
                 let parts = parts.ok_or_else(|| unsupported("samples of several types"))?;
-                let toner =
-                    toner.get_or_insert_with(|| Toner::new::<$type>(tone, file.colors, file.alpha));
+                let toner = toner.get_or_insert_with(|| {
+                    Toner::new::<$type>(wanted.tone, file.colors, file.alpha, space.clone())
+                });
                 paint(&mut plane, &region, &parts, toner)?;
             }};
         }
         match chunks.first() {
             Some(DecodingResult::U8(packed)) if file.bits < 8 => {
                 let samples = unpacked(packed, &region, file.bits);
-                let toner =
-                    toner.get_or_insert_with(|| Toner::new::<u8>(tone, file.colors, file.alpha));
+                let toner = toner.get_or_insert_with(|| {
+                    Toner::new::<u8>(wanted.tone, file.colors, file.alpha, space.clone())
+                });
                 paint(&mut plane, &region, &[&samples], toner)?;
             }
             Some(DecodingResult::U8(_)) => paint!(U8, u8),
@@ -81,7 +135,46 @@ pub(super) fn read(file: BufReader<File>, tone: Tone) -> Result<Picture, Picture
             _ => return Err(unsupported("signed samples, which have no white,")),
         }
     }
-    plane.finish()
+    plane.finish(toner.as_ref())
+}
+
+/// Turns to the page to show.
+fn full_page(decoder: &mut Decoder<Source>) -> Result<(), PictureError> {
+    let mut best: Option<(u64, usize)> = None;
+    let mut pages = 0;
+    for index in 0..MOST_PAGES {
+        pages = index + 1;
+        let kind = decoder.find_tag_unsigned::<u32>(Tag::NewSubfileType).ok().flatten();
+        let old = decoder.find_tag_unsigned::<u32>(Tag::SubfileType).ok().flatten();
+        let part =
+            kind.is_some_and(|bits| bits & (REDUCED | MASK) != 0) || old == Some(OLD_REDUCED);
+        if !part && let Ok((width, height)) = decoder.dimensions() {
+            let area = u64::from(width) * u64::from(height);
+            if best.is_none_or(|(most, _)| area > most) {
+                best = Some((area, index));
+            }
+        }
+        // A page that cannot be read ends the list; those before it can be shown.
+        if !decoder.more_images() || decoder.next_image().is_err() {
+            break;
+        }
+    }
+    match best {
+        Some((_, index)) => decoder.seek_to_image(index).map_err(failure),
+        None if pages == 1 => Ok(()),
+        None => Err(unsupported("files of nothing but thumbnails and masks")),
+    }
+}
+
+/// A fraction above zero.
+fn ratio(value: tiff::decoder::ifd::Value) -> Option<f64> {
+    use tiff::decoder::ifd::Value;
+    let ratio = match value {
+        Value::Rational(above, below) => f64::from(above) / f64::from(below),
+        Value::List(values) => return ratio(values.into_iter().next()?),
+        _ => return None,
+    };
+    (ratio.is_finite() && ratio > 0.0).then_some(ratio)
 }
 
 /// What the header says about the pixels.
@@ -108,7 +201,7 @@ struct Region {
 }
 
 impl Layout {
-    fn of(decoder: &mut Decoder<BufReader<File>>) -> Result<Self, PictureError> {
+    fn of(decoder: &mut Decoder<Source>, more: usize) -> Result<Self, PictureError> {
         let (width, height) = decoder.dimensions().map_err(failure)?;
         let (width, height) = (width as usize, height as usize);
         let color = decoder.colortype().map_err(failure)?;
@@ -144,7 +237,7 @@ impl Layout {
             && color.num_samples() > 1;
         // Checked before the chunk size is asked for; a chunk is never larger than the picture.
         let samples = usize::from(color.num_samples());
-        limits::check(width, height, samples * usize::from(bits).div_ceil(8))?;
+        limits::check(width, height, samples * usize::from(bits).div_ceil(8) + more)?;
         let chunk = match decoder.get_chunk_type() {
             ChunkType::Strip => {
                 let rows = decoder
@@ -190,8 +283,8 @@ impl Layout {
 
 /// Sets the pixels of `region`. `parts` holds its samples: all interleaved in one part, or each in a
 /// part of its own.
-fn paint<S: Sample>(
-    plane: &mut Plane,
+fn paint<P: Pixel, S: Sample>(
+    plane: &mut Plane<P>,
     region: &Region,
     parts: &[&[S]],
     toner: &Toner,
@@ -216,7 +309,7 @@ fn paint<S: Sample>(
             separate => pixel.extend(separate[..used].iter().map(|part| part[index])),
         }
         let (x, y) = (region.left + index % region.width, region.top + index / region.width);
-        plane.set(x, y, toner.importance(&pixel));
+        plane.set(x, y, P::of(toner, &pixel));
     }
     Ok(())
 }

@@ -1,19 +1,45 @@
-//! From a pixel's samples to how many dots it deserves: its importance, from 0 (none) to 1 (most).
+//! From a pixel's samples to how many dots it deserves: its importance, from 0 (none) to 1 (most); or
+//! to its light.
 
-use std::ops::Range;
+use std::cell::Cell;
+use std::sync::Arc;
 
+use super::color::{self, Curve, Space};
 use super::srgb;
 
 /// Rec. 709 weights of red, green and blue in luma and in luminance.
 const WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Which tone the dots follow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tone {
     /// Importance follows linear light (luminance), not encoded values (luma).
     pub linear: bool,
     /// Importance is the brightness, not its complement.
     pub invert: bool,
+    /// Brightness is stretched so.
+    pub levels: Option<Levels>,
+    /// The light of a float file is multiplied by two to this power.
+    pub exposure: Option<f64>,
+}
+
+/// Which encoded brightness, of 255, becomes black and which white, and how the middle moves.
+///
+/// Under `linear` the light of these values becomes black and white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    /// At least 0.
+    pub black: f64,
+    /// Above `black`, at most 255.
+    pub white: f64,
+    /// Stretched brightness is raised to one over this: above 1 lightens the middle.
+    pub gamma: f64,
+}
+
+impl Default for Levels {
+    fn default() -> Self {
+        Self { black: 0.0, white: 255.0, gamma: 1.0 }
+    }
 }
 
 /// What a pixel's samples mean, in file order.
@@ -80,28 +106,119 @@ sample!(exr::prelude::f16, float: true, fraction: |s| s.to_f64(), index: |_| Non
 sample!(f32, float: true, fraction: f64::from, index: |_| None);
 sample!(f64, float: true, fraction: |s| s, index: |_| None);
 
-/// Turns the pixels of one file into importance.
-#[derive(Debug)]
+/// What a pixel becomes.
+pub(super) trait Pixel: Copy {
+    /// What a pixel is that the file does not hold: transparent if it has alpha, black if not.
+    const NOTHING: Self;
+    /// From the samples of a pixel, as for [`Toner::importance`].
+    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self>;
+    /// A weighted mean's next term.
+    fn plus(self, other: Self, weight: f32) -> Self;
+}
+
+impl Pixel for f32 {
+    const NOTHING: Self = 0.0;
+
+    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
+        toner.importance(samples)
+    }
+
+    fn plus(self, other: Self, weight: f32) -> Self {
+        self + other * weight
+    }
+}
+
+/// Radiance: linear red, green and blue as stored, alpha aside.
+impl Pixel for [f32; 3] {
+    const NOTHING: Self = [0.0; 3];
+
+    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
+        let color = match toner.colors {
+            Colors::Gray => [samples[0].fraction(); 3],
+            _ => [0, 1, 2].map(|i| samples[i].fraction()),
+        };
+        let color = toner.space.matrix.map_or(color, |matrix| color::apply(&matrix, color));
+        Some(color.map(|value| value as f32))
+    }
+
+    fn plus(self, other: Self, weight: f32) -> Self {
+        [0, 1, 2].map(|i| self[i] + other[i] * weight)
+    }
+}
+
+/// Linear sRGB light, at least 0, of the covered part of a pixel; and how much of it is covered.
+impl Pixel for [f32; 4] {
+    const NOTHING: Self = [0.0; 4];
+
+    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
+        let (color, alpha) = toner.straight(samples)?;
+        let light = |value: f64| if S::FLOAT { value } else { toner.tone.light(value) };
+        let [red, green, blue] = color.map(|value| light(value) as f32);
+        Some([red, green, blue, alpha as f32])
+    }
+
+    fn plus(self, other: Self, weight: f32) -> Self {
+        [0, 1, 2, 3].map(|i| self[i] + other[i] * weight)
+    }
+}
+
+/// Turns the pixels of one file into what is asked for.
 pub(super) struct Toner {
     tone: Tone,
     colors: Colors,
     alpha: Alpha,
-    /// Working values of the samples 0, 1, 2 … of an 8- or 16-bit file.
-    levels: Vec<f64>,
+    space: Space,
+    /// Working values of the samples 0, 1, 2 … of an 8- or 16-bit file; of red, of green and of blue
+    /// where their curves differ.
+    levels: [Arc<[f64]>; 3],
+    /// What float samples are multiplied by.
+    exposure: f64,
+    /// Light to encoded values, where colours are mixed in light and followed encoded.
+    encode: Option<srgb::Encoder>,
+    /// The least and greatest brightness of a float file so far.
+    range: Cell<(f64, f64)>,
 }
 
 impl Toner {
-    /// A converter for samples of type `S`. The table for 16 bits takes half a mebibyte.
-    pub(super) fn new<S: Sample>(tone: Tone, colors: Colors, alpha: Alpha) -> Self {
-        let table: Range<u32> = match size_of::<S>() {
-            _ if S::FLOAT => 0..0,
-            1 => 0..1 << 8,
-            2 => 0..1 << 16,
-            _ => 0..0,
+    /// A converter for samples of type `S`. A table for 16 bits takes half a mebibyte.
+    pub(super) fn new<S: Sample>(tone: Tone, colors: Colors, alpha: Alpha, space: Space) -> Self {
+        let count: u32 = match size_of::<S>() {
+            _ if S::FLOAT => 0,
+            1 => 1 << 8,
+            2 => 1 << 16,
+            _ => 0,
         };
-        let top = f64::from(table.end.saturating_sub(1));
-        let levels = table.map(|level| tone.working(f64::from(level) / top)).collect();
-        Self { tone, colors, alpha, levels }
+        let top = f64::from(count.saturating_sub(1));
+        let mixed = space.matrix.is_some();
+        let table = |curve: Option<&Curve>| -> Arc<[f64]> {
+            (0..count)
+                .map(|level| {
+                    let value = f64::from(level) / top;
+                    match curve {
+                        None => tone.working(value),
+                        Some(curve) if mixed => curve(value),
+                        Some(curve) => tone.shown(curve(value).clamp(0.0, 1.0)),
+                    }
+                })
+                .collect()
+        };
+        let levels = match &space.curves {
+            None => {
+                let all = table(None);
+                [all.clone(), all.clone(), all]
+            }
+            Some([red, green, blue]) => {
+                let first = table(Some(red));
+                let of = |curve: &Curve| {
+                    if Arc::ptr_eq(curve, red) { first.clone() } else { table(Some(curve)) }
+                };
+                [first.clone(), of(green), of(blue)]
+            }
+        };
+        let encode = (mixed && !tone.linear && !S::FLOAT).then(srgb::Encoder::new);
+        let exposure = libm::exp2(tone.exposure.unwrap_or(0.0));
+        let range = Cell::new((f64::INFINITY, f64::NEG_INFINITY));
+        Self { tone, colors, alpha, space, levels, exposure, encode, range }
     }
 
     /// How many samples a pixel has that count: its colours and its alpha, if any.
@@ -109,11 +226,82 @@ impl Toner {
         self.colors.count() + usize::from(self.alpha != Alpha::None)
     }
 
+    /// The space, for a converter that has seen nothing yet.
+    pub(super) fn into_space(self) -> Space {
+        self.space
+    }
+
+    /// The least and greatest brightness of a float file, if any of its pixels was seen.
+    pub(super) fn range(&self) -> Option<(f64, f64)> {
+        let (least, greatest) = self.range.get();
+        (least <= greatest).then_some((least, greatest))
+    }
+
     /// Importance, in 0..=1, of a pixel given by its colours and then its alpha, if any; `None` when
     /// one of these is a NaN or an infinity. Samples after those are ignored.
     ///
+    /// What is not covered is paper: white, or black when dots are white.
+    ///
     /// `pixel` holds at least as many samples as the colours and alpha take.
     pub(super) fn importance<S: Sample>(&self, pixel: &[S]) -> Option<f32> {
+        let (rgb, alpha) = self.working(pixel)?;
+        if S::FLOAT {
+            let brightness = self.mean(rgb);
+            let (least, greatest) = self.range.get();
+            self.range.set((least.min(brightness), greatest.max(brightness)));
+        }
+        if let Some(levels) = self.tone.levels {
+            let brightness = self.mean(self.uncovered(rgb, alpha).map(|value| {
+                let value = value.min(1.0);
+                if S::FLOAT && !self.tone.linear { srgb::encode(value) } else { value }
+            }));
+            let brightness = self.tone.leveled(levels, brightness) as f32;
+            let dark = if self.tone.invert { brightness } else { 1.0 - brightness };
+            return Some(dark * alpha as f32);
+        }
+        let paper = if self.tone.invert { 0.0 } else { 1.0 - alpha };
+        let shown = |value: f64| {
+            let over = match self.alpha {
+                Alpha::None => value,
+                Alpha::Straight => value * alpha + paper,
+                Alpha::Associated => value + paper,
+            };
+            let over = over.min(1.0);
+            if S::FLOAT && !self.tone.linear { srgb::encode(over) } else { over }
+        };
+        // Rounded to f32 first, white is exactly 1 and deserves exactly no dots.
+        let brightness = match self.colors {
+            Colors::Gray => shown(rgb[0]),
+            _ => self.mean(rgb.map(shown)),
+        } as f32;
+        let brightness = brightness.min(1.0);
+        Some(if self.tone.invert { brightness } else { 1.0 - brightness })
+    }
+
+    /// The colour of the covered part in the working space, and how much is covered.
+    fn straight<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
+        let (rgb, alpha) = self.working(pixel)?;
+        Some((self.uncovered(rgb, alpha), alpha))
+    }
+
+    /// Colours without the coverage that they are multiplied by.
+    fn uncovered(&self, rgb: [f64; 3], alpha: f64) -> [f64; 3] {
+        if self.alpha == Alpha::Associated && alpha > 0.0 {
+            rgb.map(|value| value / alpha)
+        } else {
+            rgb
+        }
+    }
+
+    fn mean(&self, [red, green, blue]: [f64; 3]) -> f64 {
+        match self.colors {
+            Colors::Gray => red,
+            _ => WEIGHTS[0] * red + WEIGHTS[1] * green + WEIGHTS[2] * blue,
+        }
+    }
+
+    /// Colours as light (floats), or in the space that `tone` asks for (integers); and alpha.
+    fn working<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
         let count = self.colors.count();
         let alpha = match self.alpha {
             Alpha::None => 1.0,
@@ -124,52 +312,75 @@ impl Toner {
         {
             return None;
         }
-        let alpha = alpha.clamp(0.0, 1.0);
+        Some((self.color(pixel), alpha.clamp(0.0, 1.0)))
+    }
+
+    fn color<S: Sample>(&self, pixel: &[S]) -> [f64; 3] {
+        if let Some(table) = &self.space.table {
+            let mut device = [0f32; 4];
+            let count = self.colors.count();
+            for (value, sample) in device.iter_mut().zip(&pixel[..count]) {
+                *value = sample.fraction().clamp(0.0, 1.0) as f32;
+            }
+            let mut encoded = [0f32; 3];
+            // Fails only for slices of lengths that do not match.
+            let _ = table.transform(&device[..count], &mut encoded);
+            return encoded.map(|value| {
+                let value = if value.is_finite() { f64::from(value).clamp(0.0, 1.0) } else { 0.0 };
+                if S::FLOAT {
+                    srgb::decode(value) * self.exposure
+                } else {
+                    self.tone.working(value)
+                }
+            });
+        }
         let rgb = match self.colors {
-            Colors::Gray => [self.light(pixel[0]); 3],
-            Colors::Rgb => [self.light(pixel[0]), self.light(pixel[1]), self.light(pixel[2])],
+            Colors::Gray => [self.value(0, pixel[0]); 3],
+            Colors::Rgb => [0, 1, 2].map(|i| self.value(i, pixel[i])),
             Colors::Cmyk => {
                 let paper = 1.0 - pixel[3].fraction();
-                [0, 1, 2].map(|i| self.tone.working((1.0 - pixel[i].fraction()) * paper))
+                [0, 1, 2].map(|i| self.encoded(i, (1.0 - pixel[i].fraction()) * paper))
             }
             Colors::YCbCr => {
                 let [y, cb, cr] = [0, 1, 2].map(|i| pixel[i].fraction());
                 // The zero of a colour difference is half of full scale rounded up.
                 let (cb, cr) = (cb - 128.0 / 255.0, cr - 128.0 / 255.0);
-                [y + 1.402 * cr, y - 0.344136 * cb - 0.714136 * cr, y + 1.772 * cb]
-                    .map(|value| self.tone.working(value.clamp(0.0, 1.0)))
+                let rgb = [y + 1.402 * cr, y - 0.344136 * cb - 0.714136 * cr, y + 1.772 * cb];
+                [0, 1, 2].map(|i| self.encoded(i, rgb[i].clamp(0.0, 1.0)))
             }
         };
-        let shown = |value: f64| {
-            let over = match self.alpha {
-                Alpha::None => value,
-                Alpha::Straight => value * alpha + (1.0 - alpha),
-                Alpha::Associated => value + (1.0 - alpha),
-            };
-            let over = over.min(1.0);
-            if S::FLOAT && !self.tone.linear { srgb::encode(over) } else { over }
-        };
-        let brightness = match self.colors {
-            Colors::Gray => shown(rgb[0]),
-            _ => {
-                let [red, green, blue] = rgb.map(shown);
-                WEIGHTS[0] * red + WEIGHTS[1] * green + WEIGHTS[2] * blue
-            }
-        };
-        // Rounded to f32 first, white is exactly 1 and deserves exactly no dots.
-        let brightness = brightness as f32;
-        let brightness = brightness.min(1.0);
-        Some(if self.tone.invert { brightness } else { 1.0 - brightness })
+        let Some(matrix) = &self.space.matrix else { return rgb };
+        let light = color::apply(matrix, rgb).map(|value| value.max(0.0));
+        match &self.encode {
+            _ if S::FLOAT => light,
+            Some(encoder) => light.map(|value| encoder.encode(value)),
+            None => light.map(|value| value.min(1.0)),
+        }
     }
 
-    /// A colour sample as linear light (floats), or in the space that `tone` asks for (integers).
-    fn light<S: Sample>(&self, sample: S) -> f64 {
+    /// A colour sample as light (floats or where colours are mixed), or in the space of `tone`.
+    fn value<S: Sample>(&self, channel: usize, sample: S) -> f64 {
         if S::FLOAT {
-            return sample.fraction().max(0.0);
+            let value = sample.fraction().max(0.0);
+            return self.exposure
+                * match &self.space.curves {
+                    // Above white a curve says nothing.
+                    Some(curves) if value <= 1.0 => curves[channel](value),
+                    _ => value,
+                };
         }
-        match sample.index().and_then(|index| self.levels.get(index)) {
+        match sample.index().and_then(|index| self.levels[channel].get(index)) {
             Some(&level) => level,
-            None => self.tone.working(sample.fraction()),
+            None => self.encoded(channel, sample.fraction()),
+        }
+    }
+
+    /// As [`Self::value`], of an encoded value in 0..=1.
+    fn encoded(&self, channel: usize, value: f64) -> f64 {
+        match &self.space.curves {
+            None => self.tone.working(value),
+            Some(curves) if self.space.matrix.is_some() => curves[channel](value),
+            Some(curves) => self.tone.shown(curves[channel](value).clamp(0.0, 1.0)),
         }
     }
 }
@@ -179,27 +390,44 @@ impl Tone {
     fn working(self, encoded: f64) -> f64 {
         if self.linear { srgb::decode(encoded) } else { encoded }
     }
+
+    /// Light in 0..=1, in that space.
+    fn shown(self, light: f64) -> f64 {
+        if self.linear { light } else { srgb::encode(light) }
+    }
+
+    /// The light of a value in that space.
+    fn light(self, working: f64) -> f64 {
+        if self.linear { working } else { srgb::decode(working.clamp(0.0, 1.0)) }
+    }
+
+    /// Brightness in 0..=1, stretched.
+    fn leveled(self, levels: Levels, brightness: f64) -> f64 {
+        let [black, white] = [levels.black, levels.white].map(|value| self.working(value / 255.0));
+        let stretched = ((brightness - black) / (white - black)).clamp(0.0, 1.0);
+        if levels.gamma == 1.0 { stretched } else { libm::pow(stretched, 1.0 / levels.gamma) }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const DEFAULT: Tone = Tone { linear: false, invert: false };
-    const LINEAR: Tone = Tone { linear: true, invert: false };
+    const DEFAULT: Tone = Tone { linear: false, invert: false, levels: None, exposure: None };
+    const LINEAR: Tone = Tone { linear: true, ..DEFAULT };
 
     fn importance<S: Sample>(tone: Tone, colors: Colors, alpha: Alpha, pixel: &[S]) -> f32 {
-        Toner::new::<S>(tone, colors, alpha).importance(pixel).unwrap()
+        Toner::new::<S>(tone, colors, alpha, Space::default()).importance(pixel).unwrap()
     }
 
     #[test]
     fn white_is_exactly_zero_and_black_exactly_one_at_every_depth() {
         fn check<S: Sample>(zero: S, full: S) {
             for tone in [DEFAULT, LINEAR] {
-                let rgb = Toner::new::<S>(tone, Colors::Rgb, Alpha::None);
+                let rgb = Toner::new::<S>(tone, Colors::Rgb, Alpha::None, Space::default());
                 assert_eq!(rgb.importance(&[full; 3]), Some(0.0));
                 assert_eq!(rgb.importance(&[zero; 3]), Some(1.0));
-                let gray = Toner::new::<S>(tone, Colors::Gray, Alpha::Straight);
+                let gray = Toner::new::<S>(tone, Colors::Gray, Alpha::Straight, Space::default());
                 assert_eq!(gray.importance(&[full, full]), Some(0.0));
                 assert_eq!(gray.importance(&[zero, full]), Some(1.0));
                 assert_eq!(gray.importance(&[zero, zero]), Some(0.0), "transparent is white");
@@ -262,7 +490,7 @@ mod tests {
 
     #[test]
     fn a_nan_or_infinity_in_any_sample_is_no_importance() {
-        let toner = Toner::new::<f32>(DEFAULT, Colors::Rgb, Alpha::Straight);
+        let toner = Toner::new::<f32>(DEFAULT, Colors::Rgb, Alpha::Straight, Space::default());
         for place in 0..4 {
             for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let mut pixel = [0.5; 4];
@@ -290,5 +518,66 @@ mod tests {
         assert!(ycbcr([255, 128, 128]) < 1e-6);
         // Pure red in JPEG's numbers.
         assert!((ycbcr([76, 85, 255]) - (1.0 - 0.2126)).abs() < 0.01);
+    }
+
+    #[test]
+    fn transparent_is_nothing_in_both_senses() {
+        for tone in [DEFAULT, LINEAR] {
+            for invert in [false, true] {
+                let tone = Tone { invert, ..tone };
+                for level in [0u8, 77, 255] {
+                    let found = importance(tone, Colors::Gray, Alpha::Straight, &[level, 0]);
+                    assert_eq!(found, 0.0);
+                    let float = [f32::from(level), 0.0];
+                    assert_eq!(importance(tone, Colors::Gray, Alpha::Straight, &float), 0.0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn levels_stretch_and_their_gamma_moves_the_middle() {
+        let levels = |black, white, gamma| Some(Levels { black, white, gamma });
+        for linear in [false, true] {
+            let tone = Tone { linear, levels: levels(10.0, 250.0, 1.0), ..DEFAULT };
+            let at = |tone, level: u8| importance(tone, Colors::Gray, Alpha::None, &[level]);
+            assert_eq!((at(tone, 250), at(tone, 255)), (0.0, 0.0));
+            assert_eq!((at(tone, 10), at(tone, 0)), (1.0, 1.0));
+            assert!(at(tone, 128) > 0.0 && at(tone, 128) < 1.0);
+            let lighter = Tone { levels: levels(10.0, 250.0, 2.0), ..tone };
+            assert!(at(lighter, 128) < at(tone, 128));
+            let same = Tone { levels: Some(Levels::default()), ..tone };
+            let plain = Tone { levels: None, ..tone };
+            assert!((at(same, 99) - at(plain, 99)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn exposure_doubles_light_by_the_stop() {
+        let tone = Tone { exposure: Some(-2.0), ..LINEAR };
+        assert_eq!(importance(tone, Colors::Gray, Alpha::None, &[2.0f32]), 0.5);
+    }
+
+    #[test]
+    fn a_curve_and_a_matrix_are_followed_at_every_depth() {
+        fn check<S: Sample>(half: S) {
+            // Linear samples: half is encoded .735.
+            let space = Space::of_curve(Arc::new(|value| value));
+            for mixed in [false, true] {
+                let matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+                let space = Space { matrix: mixed.then_some(matrix), ..space.clone() };
+                for (tone, dark) in [(DEFAULT, 1.0 - srgb::encode(0.5)), (LINEAR, 0.5)] {
+                    let toner = Toner::new::<S>(tone, Colors::Rgb, Alpha::None, space.clone());
+                    let found = f64::from(toner.importance(&[half; 3]).unwrap());
+                    assert!((found - dark).abs() < 3e-3, "{found} {dark}");
+                    let light = <[f32; 4]>::of(&toner, &[half; 3]).unwrap();
+                    assert!((light[1] - 0.5).abs() < 3e-3 && light[3] == 1.0);
+                }
+            }
+        }
+        check(128u8);
+        check(32768u16);
+        check(1u32 << 31);
+        check(0.5f32);
     }
 }

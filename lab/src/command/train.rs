@@ -1,4 +1,4 @@
-//! `twelvefold relax`: trains the relaxed offsets that `build.rs` bakes, and measures them.
+//! `twelvefold-lab train`: trains the relaxed offsets that `build.rs` bakes, and measures them.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use twelvefold::Tables;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold::tiling::{Digits, OutOfRange, Rules};
 use twelvefold_lab::measure::Evenness;
-use twelvefold_lab::train::{Recipe, report};
+use twelvefold_lab::train::{Recipe, evaluate};
 
 use crate::args::TrainOptions;
 use twelvefold_files::failure::Failure;
@@ -60,9 +60,9 @@ fn rules(digits: Option<&Path>) -> Result<Rules, Failure> {
     Rules::new(&digits).map_err(|error| Failure::at(path, error))
 }
 
-fn read(path: &Path, rules: &Rules) -> Result<Relaxation, Failure> {
+fn read(path: &Path, rules: &Rules) -> Result<Displacements, Failure> {
     let bytes = fs::read(path).map_err(|error| Failure::at(path, error))?;
-    let table = Relaxation::from_bytes(&bytes).map_err(|error| Failure::at(path, error))?;
+    let table = Displacements::from_bytes(&bytes).map_err(|error| Failure::at(path, error))?;
     if !table.fits(rules.digits()) {
         return Err(Failure::at(path, "trained for another digit assignment"));
     }
@@ -74,7 +74,7 @@ fn train(
     path: &Path,
     rules: &Rules,
     pool: &rayon::ThreadPool,
-) -> Result<Relaxation, Failure> {
+) -> Result<Displacements, Failure> {
     let recipe = if options.tiny { Recipe::tiny() } else { Recipe::standard() };
     // Before minutes of work rather than after.
     let mut output = Output::create(path).map_err(|error| Failure::at(path, error))?;
@@ -114,7 +114,7 @@ fn bar(sweeps: usize, quiet: bool) -> ProgressBar {
 }
 
 /// The figures of the table beside those of fixed centres, on places that training never saw.
-fn description(rules: &Rules, table: &Relaxation) -> Result<String, OutOfRange> {
+fn description(rules: &Rules, table: &Displacements) -> Result<String, OutOfRange> {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "provenance  {}", table.provenance);
@@ -134,9 +134,9 @@ fn description(rules: &Rules, table: &Relaxation) -> Result<String, OutOfRange> 
         "\nuniform density, the worst of {PLACES} windows of {} points\n\
          \x20                 relaxed                    fixed centres\n\
          \x20  tau    lowE  dmean  dmin      lowE  dmean  dmin",
-        report::WINDOW_POINTS
+        evaluate::WINDOW_POINTS
     );
-    let sweep = |table| report::uniform_sweep(rules, table, PHASES, PLACES, REPORT_SEED);
+    let sweep = |table| evaluate::uniform_sweep(rules, table, PHASES, PLACES, REPORT_SEED);
     let (relaxed, fixed) = (sweep(Some(table))?, sweep(None)?);
     let line = |e: Option<Evenness>| {
         e.map_or(String::from("too few points"), |e| {
@@ -144,10 +144,11 @@ fn description(rules: &Rules, table: &Relaxation) -> Result<String, OutOfRange> 
         })
     };
     for ((tau, relaxed), (_, fixed)) in relaxed.iter().zip(&fixed) {
-        let (relaxed, fixed) = (line(report::worst(relaxed)), line(report::worst(fixed)));
+        let (relaxed, fixed) = (line(evaluate::worst(relaxed)), line(evaluate::worst(fixed)));
         let _ = writeln!(text, "{tau:6.3}   {relaxed}    {fixed}");
     }
-    let all = |sweep: &[(f64, Vec<Evenness>)]| line(report::worst(sweep.iter().flat_map(|s| &s.1)));
+    let all =
+        |sweep: &[(f64, Vec<Evenness>)]| line(evaluate::worst(sweep.iter().flat_map(|s| &s.1)));
     let _ = writeln!(text, " worst   {}    {}", all(&relaxed), all(&fixed));
 
     let _ = writeln!(
@@ -155,11 +156,11 @@ fn description(rules: &Rules, table: &Relaxation) -> Result<String, OutOfRange> 
         "\nimages, mean of 4 phases, {IMAGE_POINTS} points\n\
          \x20                  variance  nn mean  nn 1 %  wrong side of an edge"
     );
-    let side = report::TEST_IMAGE_SIDE;
-    for (name, values) in [("test", report::test_image()), ("edges", report::edge_image())] {
+    let side = evaluate::TEST_IMAGE_SIDE;
+    for (name, values) in [("test", evaluate::test_image()), ("edges", evaluate::edge_image())] {
         for (kind, table) in [("relaxed", Some(table)), ("fixed", None)] {
             let measured =
-                report::image_sweep(rules, table, &values, side, IMAGE_POINTS, 4, REPORT_SEED)?;
+                evaluate::image_sweep(rules, table, &values, side, IMAGE_POINTS, 4, REPORT_SEED)?;
             let mean = |figure: &dyn Fn(&(_, f64)) -> f64| {
                 measured.iter().map(figure).sum::<f64>() / measured.len() as f64
             };

@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use super::MeasureError;
+
 /// The most points of which the star discrepancy is computed exactly: half a second.
 pub const EXACT_LIMIT: usize = 16_384;
 
@@ -18,22 +20,34 @@ pub struct Bounds {
 }
 
 /// The star discrepancy of points of the unit square: sup |points in [0, x) × [0, y) / n − x·y| over all
-/// 0 ≤ x, y ≤ 1. `None` without points, or with one outside of [0, 1]².
+/// 0 ≤ x, y ≤ 1.
 ///
 /// Exact up to [`EXACT_LIMIT`] points, in O(n²) (Bundschuh and Zhu, *A method for exact calculation of
 /// the discrepancy of low-dimensional finite point sets*, 1993). Larger sets are bounded to
 /// 2/8192 on a grid: upper − lower ≤ 0.000244 + the share of points in one row and one column of it.
-#[must_use]
-pub fn star(points: &[DVec2]) -> Option<Bounds> {
-    let inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(DVec2::ONE).all();
-    if points.is_empty() || !points.iter().all(inside) {
-        return None;
-    }
+///
+/// # Errors
+/// [`MeasureError::TooFew`] without points, [`MeasureError::OutsideUnitSquare`] with one outside of
+/// [0, 1]².
+pub fn star(points: &[DVec2]) -> Result<Bounds, MeasureError> {
+    check(points)?;
     if points.len() <= EXACT_LIMIT {
         let exact = star_exact(points);
-        return Some(Bounds { lower: exact, upper: exact });
+        return Ok(Bounds { lower: exact, upper: exact });
     }
-    Some(star_on_grid(points, GRID))
+    Ok(star_on_grid(points, GRID))
+}
+
+/// At least one point, each in [0, 1]².
+fn check(points: &[DVec2]) -> Result<(), MeasureError> {
+    if points.is_empty() {
+        return Err(MeasureError::TooFew { found: 0, needed: 1 });
+    }
+    let inside = |p: &DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(DVec2::ONE).all();
+    match points.iter().position(|p| !inside(p)) {
+        Some(point) => Err(MeasureError::OutsideUnitSquare { point }),
+        None => Ok(()),
+    }
 }
 
 fn star_exact(points: &[DVec2]) -> f64 {
@@ -96,12 +110,12 @@ fn star_on_grid(points: &[DVec2], side: usize) -> Bounds {
 }
 
 /// The L2 star discrepancy of points of the unit square: the root of ∫ (share − area)² over all boxes,
-/// by Warnock's formula (1972) in O(n log n). `None` without points.
-#[must_use]
-pub fn l2_star(points: &[DVec2]) -> Option<f64> {
-    if points.is_empty() {
-        return None;
-    }
+/// by Warnock's formula (1972) in O(n log n).
+///
+/// # Errors
+/// As [`star`].
+pub fn l2_star(points: &[DVec2]) -> Result<f64, MeasureError> {
+    check(points)?;
     let n = points.len() as f64;
     let single: f64 = points.iter().map(|p| (1.0 - p.x * p.x) * (1.0 - p.y * p.y)).sum();
     // Pairs: (1 − max x)(1 − max y). With x ascending, the later point has the greater x; sums over y
@@ -128,7 +142,7 @@ pub fn l2_star(points: &[DVec2]) -> Option<f64> {
         total_above += y;
     }
     let squared = 1.0 / 9.0 - single / (2.0 * n) + pairs / (n * n);
-    Some(libm::sqrt(squared.max(0.0)))
+    Ok(libm::sqrt(squared.max(0.0)))
 }
 
 /// Sums of the first entries of an array that changes: a Fenwick tree.
@@ -215,9 +229,12 @@ mod tests {
         let grid: Vec<DVec2> =
             (0..25).map(|i| DVec2::new(f64::from(i % 5), f64::from(i / 5)) / 4.0).collect();
         assert!((star(&grid).unwrap().lower - star_by_trying(&grid)).abs() < 1e-15);
-        assert_eq!(star(&[]), None);
-        assert_eq!(star(&[DVec2::new(0.5, 1.5)]), None);
-        assert_eq!(star(&[DVec2::NAN]), None);
+        let outside = Err(MeasureError::OutsideUnitSquare { point: 1 });
+        for point in [DVec2::new(0.5, 1.5), DVec2::NAN, DVec2::NEG_INFINITY] {
+            assert_eq!(star(&[DVec2::ONE, point]), outside);
+            assert_eq!(l2_star(&[DVec2::ONE, point]).err(), outside.err());
+        }
+        assert_eq!(star(&[]), Err(MeasureError::TooFew { found: 0, needed: 1 }));
     }
 
     #[test]
@@ -252,7 +269,7 @@ mod tests {
         // One point at the origin: every box holds it, ∫ (1 − xy)² = 1 − 1/2 + 1/9.
         let one = l2_star(&[DVec2::ZERO]).unwrap();
         assert!((one - (11.0f64 / 18.0).sqrt()).abs() < 1e-15);
-        assert_eq!(l2_star(&[]), None);
+        assert_eq!(l2_star(&[]), Err(MeasureError::TooFew { found: 0, needed: 1 }));
     }
 
     #[test]

@@ -3,16 +3,14 @@
 use glam::DVec2;
 
 use super::nearest::{self, Summary};
-use super::{Window, hexagonal_distance};
+use super::{MeasureError, Window, hexagonal_distance};
 
 /// An importance image as the measures see it: `values[y·width + x]` is the importance on the pixel
-/// [x, x + 1) × [y, y + 1); finite and ≥ 0.
+/// [x, x + 1) × [y, y + 1).
 #[derive(Clone, Copy, Debug)]
-pub struct Importance<'a> {
-    /// Pixels, row by row.
-    pub values: &'a [f32],
-    /// Pixels a row, positive.
-    pub width: usize,
+pub struct Raster<'a> {
+    values: &'a [f32],
+    width: usize,
 }
 
 /// How faithfully points follow an image.
@@ -28,13 +26,29 @@ pub struct Fidelity {
     pub first_percentile: f64,
 }
 
-impl Importance<'_> {
+impl<'a> Raster<'a> {
+    /// Of `width` pixels a row.
+    ///
+    /// # Errors
+    /// [`MeasureError::NotRows`] unless the values fill whole rows, at least one;
+    /// [`MeasureError::Pixel`] for the first that is not finite or below 0.
+    pub fn new(width: usize, values: &'a [f32]) -> Result<Self, MeasureError> {
+        if values.is_empty() || values.len().checked_rem(width) != Some(0) {
+            return Err(MeasureError::NotRows { width, pixels: values.len() });
+        }
+        match values.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+            Some(i) => Err(MeasureError::Pixel { x: i % width, y: i / width }),
+            None => Ok(Self { values, width }),
+        }
+    }
+
     fn height(&self) -> usize {
         self.values.len() / self.width
     }
 
     fn window(&self) -> Window {
-        Window::new(DVec2::ZERO, DVec2::new(self.width as f64, self.height() as f64))
+        let size = DVec2::new(self.width as f64, self.height() as f64);
+        Window { min: DVec2::ZERO, size }
     }
 
     /// The importance of the pixel that holds `p`, of the nearest one for a point outside.
@@ -52,26 +66,36 @@ impl Importance<'_> {
 /// relative to the expected count, over the blocks: 1 for independent points.
 ///
 /// Counts are compared with the importance of the block, scaled so that the whole image expects
-/// exactly the points that lie in it. `None` if the image is 0 everywhere or holds fewer than two
-/// blocks' points.
-#[must_use]
+/// exactly the points that lie in it.
+///
+/// # Errors
+/// [`MeasureError::AllZero`] for an image of nothing, [`MeasureError::TooFew`] if it holds fewer than
+/// two blocks' points, [`MeasureError::PointsPerBlock`] unless that is at least 1.
 pub fn block_variance(
     points: &[DVec2],
-    image: &Importance<'_>,
+    image: &Raster<'_>,
     points_per_block: f64,
-) -> Option<f64> {
+) -> Result<f64, MeasureError> {
+    if points_per_block.is_nan() || points_per_block < 1.0 {
+        return Err(MeasureError::PointsPerBlock(points_per_block));
+    }
     let mut inside: Vec<DVec2> =
         points.iter().copied().filter(|p| image.window().contains(*p)).collect();
     let sums = Sums::new(image);
     let total = sums.rectangle(DVec2::ZERO, image.window().size);
-    if total <= 0.0 || total.is_nan() || (inside.len() as f64) < 2.0 * points_per_block {
-        return None;
+    if total <= 0.0 {
+        return Err(MeasureError::AllZero);
+    }
+    if (inside.len() as f64) < 2.0 * points_per_block {
+        let needed = libm::ceil(2.0 * points_per_block) as usize;
+        return Err(MeasureError::TooFew { found: inside.len(), needed });
     }
     let depth = libm::round(libm::log2(inside.len() as f64 / points_per_block)) as u32;
     let mut result = (0.0, 0u32);
     let scale = inside.len() as f64 / total;
     sums.split(&mut inside, image.window(), depth, scale, &mut result);
-    Some(result.0 / f64::from(result.1))
+    // Rounding may leave no block with importance if one pixel outweighs the others by 10¹⁶.
+    if result.1 == 0 { Err(MeasureError::AllZero) } else { Ok(result.0 / f64::from(result.1)) }
 }
 
 /// Integrals of the image from the corner: `sums[y][x]` over [0, x) × [0, y).
@@ -81,7 +105,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(image: &Importance<'_>) -> Self {
+    fn new(image: &Raster<'_>) -> Self {
         let stride = image.width + 1;
         let mut sums = vec![0.0; stride * (image.height() + 1)];
         for y in 0..image.height() {
@@ -167,15 +191,17 @@ fn partition(points: &mut [DVec2], first: impl Fn(&DVec2) -> bool) -> usize {
 /// The distance of each point to its nearest neighbour in units of the hexagonal lattice of the
 /// density that the image asks for at the point: importance at its pixel × `density_per_importance`.
 /// Points on pixels of importance 0 are left out, as they have no unit.
-#[must_use]
+///
+/// # Errors
+/// As [`nearest::distances`].
 pub fn local_distances(
     points: &[DVec2],
-    image: &Importance<'_>,
+    image: &Raster<'_>,
     density_per_importance: f64,
-) -> Vec<f64> {
+) -> Result<Vec<f64>, MeasureError> {
     let inside: Vec<DVec2> =
         points.iter().copied().filter(|p| image.window().contains(*p)).collect();
-    nearest::distances(points, &inside)
+    Ok(nearest::distances(points, &inside)?
         .iter()
         .zip(&inside)
         .map(|(distance, p)| (distance, image.at(*p)))
@@ -183,13 +209,13 @@ pub fn local_distances(
         .map(|(distance, importance)| {
             distance / hexagonal_distance(importance * density_per_importance)
         })
-        .collect()
+        .collect())
 }
 
 /// The share of the points in the image that lie on pixels of importance 0: the wrong side of edges.
 /// 0 if no point lies in the image.
 #[must_use]
-pub fn share_on_zero(points: &[DVec2], image: &Importance<'_>) -> f64 {
+pub fn share_on_zero(points: &[DVec2], image: &Raster<'_>) -> f64 {
     let window = image.window();
     let (mut inside, mut wrong) = (0u64, 0u64);
     for p in points.iter().filter(|p| window.contains(**p)) {
@@ -200,14 +226,17 @@ pub fn share_on_zero(points: &[DVec2], image: &Importance<'_>) -> f64 {
 }
 
 /// Measures points against the image: variance in blocks of 64 and local nearest distances. Points
-/// outside the image serve as neighbours only. `None` as for [`block_variance`].
-#[must_use]
-pub fn fidelity(points: &[DVec2], image: &Importance<'_>) -> Option<Fidelity> {
+/// outside the image serve as neighbours only.
+///
+/// # Errors
+/// As [`block_variance`] and [`local_distances`]; [`MeasureError::TooFew`] if all points lie on pixels
+/// of importance 0.
+pub fn fidelity(points: &[DVec2], image: &Raster<'_>) -> Result<Fidelity, MeasureError> {
     let count = points.iter().filter(|p| image.window().contains(**p)).count();
     let total: f64 = image.values.iter().map(|v| f64::from(*v)).sum();
     let block_variance = block_variance(points, image, 64.0)?;
-    let distances = Summary::new(local_distances(points, image, count as f64 / total))?;
-    Some(Fidelity {
+    let distances = Summary::new(local_distances(points, image, count as f64 / total)?)?;
+    Ok(Fidelity {
         count,
         block_variance,
         mean_distance: distances.mean(),
@@ -229,7 +258,7 @@ mod tests {
         let (width, height) = (96, 64);
         // Importance rising to the right: u = (x/width)² has the density 2x, so x = width·√u.
         let values: Vec<f32> = (0..width * height).map(|i| (i % width) as f32 + 0.5).collect();
-        let image = Importance { values: &values, width };
+        let image = Raster::new(width, &values).unwrap();
         let mut state = 2;
         let points: Vec<DVec2> = (0..60_000)
             .map(|_| {
@@ -245,7 +274,7 @@ mod tests {
         assert!((measured.first_percentile - 0.0526).abs() < 0.005, "{measured:?}");
 
         let flat = vec![1.0; width * height];
-        let image = Importance { values: &flat, width };
+        let image = Raster::new(width, &flat).unwrap();
         let lattice: Vec<DVec2> = (0..256 * 384)
             .map(|i| DVec2::new(f64::from(i % 384) + 0.5, f64::from(i / 384) + 0.5) * 0.25)
             .collect();
@@ -258,14 +287,15 @@ mod tests {
     #[test]
     fn points_on_nothing_are_counted_as_wrong() {
         let values = [0.0, 1.0];
-        let image = Importance { values: &values, width: 2 };
+        let image = Raster::new(2, &values).unwrap();
         let at = |x: f64| DVec2::new(x, 0.5);
         assert_eq!(share_on_zero(&[at(0.99), at(1.0), at(1.5), at(1.9), at(2.0)], &image), 0.25);
         assert_eq!(share_on_zero(&[], &image), 0.0);
-        assert_eq!(block_variance(&[at(1.5); 127], &image, 64.0), None);
         assert_eq!(
-            block_variance(&[at(1.5); 200], &Importance { values: &[0.0], width: 1 }, 64.0),
-            None
+            block_variance(&[at(1.5); 127], &image, 64.0),
+            Err(MeasureError::TooFew { found: 127, needed: 128 })
         );
+        let nothing = Raster::new(1, &[0.0]).unwrap();
+        assert_eq!(block_variance(&[at(0.5); 200], &nothing, 64.0), Err(MeasureError::AllZero));
     }
 }

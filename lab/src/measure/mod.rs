@@ -13,27 +13,53 @@
 //! A [`Window`] keeps borders from biasing: points outside it serve as neighbours only.
 
 pub mod discrepancy;
+mod error;
 pub mod fidelity;
 pub mod nearest;
 pub mod periodogram;
 pub mod spectrum;
+pub mod stippling;
+
+pub use error::MeasureError;
 
 use glam::DVec2;
 
 /// A half-open rectangle [min, min + size) inside a point set, in the units of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// The corner with the least coordinates.
-    pub min: DVec2,
-    /// Width and height, positive.
-    pub size: DVec2,
+    min: DVec2,
+    size: DVec2,
 }
 
 impl Window {
-    /// The window with these corner and extent.
+    /// The unit square.
+    pub const UNIT: Self = Self { min: DVec2::ZERO, size: DVec2::ONE };
+
+    /// The window whose corner with the least coordinates is `min`.
+    ///
+    /// # Errors
+    /// [`MeasureError::Window`] unless the size is positive, corner, opposite corner and area are
+    /// finite, and neither the area nor the size added to the corner is lost to rounding.
+    pub fn new(min: DVec2, size: DVec2) -> Result<Self, MeasureError> {
+        let max = min + size;
+        let holds = size.cmpgt(DVec2::ZERO).all()
+            && min.is_finite()
+            && max.is_finite()
+            && max.cmpgt(min).all()
+            && (size.x * size.y).is_normal();
+        if holds { Ok(Self { min, size }) } else { Err(MeasureError::Window { min, size }) }
+    }
+
+    /// The corner with the least coordinates.
     #[must_use]
-    pub const fn new(min: DVec2, size: DVec2) -> Self {
-        Self { min, size }
+    pub const fn min(&self) -> DVec2 {
+        self.min
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub const fn size(&self) -> DVec2 {
+        self.size
     }
 
     /// Whether `point` lies in [min, min + size).
@@ -49,18 +75,26 @@ impl Window {
         self.size.x * self.size.y
     }
 
-    /// The window smaller by `margin` on every side, not below an extent of 0.
-    #[must_use]
-    pub fn shrunk(&self, margin: f64) -> Self {
-        let size = (self.size - DVec2::splat(2.0 * margin)).max(DVec2::ZERO);
-        Self { min: self.min + DVec2::splat(margin), size }
+    /// The window smaller by `margin` on every side.
+    ///
+    /// # Errors
+    /// [`MeasureError::Window`] if nothing of it is left.
+    pub fn shrunk(&self, margin: f64) -> Result<Self, MeasureError> {
+        Self::new(self.min + DVec2::splat(margin), self.size - DVec2::splat(2.0 * margin))
+    }
+
+    /// The points in it, its axes scaled to [0, 1).
+    fn scaled(&self, points: &[DVec2]) -> Vec<DVec2> {
+        let inside = points.iter().filter(|p| self.contains(**p));
+        inside.map(|p| (*p - self.min) / self.size).collect()
     }
 }
 
 /// Distance between neighbours in a hexagonal lattice of `density` points a unit of area: √(2 / (√3·ρ)).
+/// Infinite for the density 0, NaN for one below it.
 #[must_use]
 pub fn hexagonal_distance(density: f64) -> f64 {
-    libm::sqrt(2.0 / (twelvefold::tiling::cyclotomic::SQRT_3 * density))
+    libm::sqrt(2.0 / (twelvefold::tiling::numbers::SQRT_3 * density))
 }
 
 /// How even a set of one density is.
@@ -77,17 +111,19 @@ pub struct Evenness {
 }
 
 /// Measures the points of a uniform density in `window`. Points outside it may be given and should be:
-/// a point at the border has its nearest neighbour there. `None` for fewer than 2 points.
+/// a point at the border has its nearest neighbour there.
 ///
 /// Costs O(n log n) for the distances and O(n²) for the spectrum, 0.3 s for 16,384 points.
-#[must_use]
-pub fn evenness(points: &[DVec2], window: Window) -> Option<Evenness> {
+///
+/// # Errors
+/// As [`nearest::distances`] and [`spectrum::low_frequency_power`].
+pub fn evenness(points: &[DVec2], window: Window) -> Result<Evenness, MeasureError> {
     let inside: Vec<DVec2> = points.iter().copied().filter(|p| window.contains(*p)).collect();
     let density = inside.len() as f64 / window.area();
-    let distances = nearest::distances(points, &inside);
+    let distances = nearest::distances(points, &inside)?;
     let unit = hexagonal_distance(density);
     let summary = nearest::Summary::new(distances.iter().map(|d| d / unit).collect())?;
-    Some(Evenness {
+    Ok(Evenness {
         count: inside.len(),
         low_frequency: spectrum::low_frequency_power(&inside, window)?,
         mean_distance: summary.mean(),

@@ -3,12 +3,21 @@
 use glam::DVec2;
 use rstar::RTree;
 
+use super::MeasureError;
+
 /// The distance from each of `queries`, which are among `points`, to the nearest other of `points`;
-/// infinite if there is no other. Coincident points are at distance 0. O(n log n).
-#[must_use]
-pub fn distances(points: &[DVec2], queries: &[DVec2]) -> Vec<f64> {
+/// infinite if there is no other, or none nearer than 10¹⁵⁴, whose square would be. Points that coincide,
+/// or are nearer than 10⁻¹⁶², are at distance 0. O(n log n).
+///
+/// # Errors
+/// [`MeasureError::NotFinite`] for the first point, or else query, that is not finite.
+pub fn distances(points: &[DVec2], queries: &[DVec2]) -> Result<Vec<f64>, MeasureError> {
+    let unfit = |points: &[DVec2]| points.iter().position(|p| !p.is_finite());
+    if let Some(point) = unfit(points).or_else(|| unfit(queries)) {
+        return Err(MeasureError::NotFinite { point });
+    }
     let tree = RTree::bulk_load(points.iter().map(|p| p.to_array()).collect());
-    queries
+    Ok(queries
         .iter()
         .map(|query| {
             // The first hit is the query itself, or a point that coincides with it.
@@ -16,7 +25,7 @@ pub fn distances(points: &[DVec2], queries: &[DVec2]) -> Vec<f64> {
                 .nth(1)
                 .map_or(f64::INFINITY, |(_, squared)| libm::sqrt(squared))
         })
-        .collect()
+        .collect())
 }
 
 /// Sorted values, for means and percentiles.
@@ -24,14 +33,19 @@ pub fn distances(points: &[DVec2], queries: &[DVec2]) -> Vec<f64> {
 pub struct Summary(Vec<f64>);
 
 impl Summary {
-    /// Of at least one value, none of them NaN; otherwise `None`.
-    #[must_use]
-    pub fn new(mut values: Vec<f64>) -> Option<Self> {
-        if values.is_empty() || values.iter().any(|v| v.is_nan()) {
-            return None;
+    /// Of values that may be infinite.
+    ///
+    /// # Errors
+    /// [`MeasureError::TooFew`] without a value, [`MeasureError::NotANumber`] with a NaN among them.
+    pub fn new(mut values: Vec<f64>) -> Result<Self, MeasureError> {
+        if values.is_empty() {
+            return Err(MeasureError::TooFew { found: 0, needed: 1 });
+        }
+        if let Some(value) = values.iter().position(|v| v.is_nan()) {
+            return Err(MeasureError::NotANumber { value });
         }
         values.sort_by(f64::total_cmp);
-        Some(Self(values))
+        Ok(Self(values))
     }
 
     /// The arithmetic mean.
@@ -70,16 +84,16 @@ mod tests {
     fn a_lattice_has_one_distance() {
         let points: Vec<DVec2> =
             (0..100).map(|i| DVec2::new(f64::from(i % 10), f64::from(i / 10))).collect();
-        assert!(distances(&points, &points).iter().all(|d| *d == 1.0));
+        assert!(distances(&points, &points).unwrap().iter().all(|d| *d == 1.0));
         let twice = [points.clone(), points[..1].to_vec()].concat();
-        assert_eq!(distances(&twice, &twice)[0], 0.0);
-        assert_eq!(distances(&points[..1], &points[..1]), [f64::INFINITY]);
+        assert_eq!(distances(&twice, &twice).unwrap()[0], 0.0);
+        assert_eq!(distances(&points[..1], &points[..1]), Ok(vec![f64::INFINITY]));
     }
 
     #[test]
     fn summaries() {
-        assert_eq!(Summary::new(vec![]), None);
-        assert_eq!(Summary::new(vec![1.0, f64::NAN]), None);
+        assert_eq!(Summary::new(vec![]), Err(MeasureError::TooFew { found: 0, needed: 1 }));
+        assert_eq!(Summary::new(vec![1.0, f64::NAN]), Err(MeasureError::NotANumber { value: 1 }));
         let summary = Summary::new((0..100).rev().map(f64::from).collect()).unwrap();
         assert_eq!((summary.least(), summary.mean(), summary.greatest()), (0.0, 49.5, 99.0));
         assert_eq!((summary.percentile(0.01), summary.percentile(1.0)), (1.0, 99.0));

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
 
-use super::Window;
+use super::{MeasureError, Window};
 
 /// The largest grid: 128 MiB of complex numbers.
 const MAX_GRID: usize = 4096;
@@ -37,19 +37,17 @@ pub struct Ring {
 
 impl Periodogram {
     /// Of the points in `window`, whose axes are scaled to the unit square: for a window that is not
-    /// square, frequencies count cycles a window on each axis. `None` for fewer than 2 points in it.
+    /// square, frequencies count cycles a window on each axis.
     ///
     /// O(n + g² log g), g = the power of two from 16√n on, at most 4096; the limit is 2√n, at most
     /// 512.
-    #[must_use]
-    pub fn new(points: &[DVec2], window: Window) -> Option<Self> {
-        let inside: Vec<DVec2> = points
-            .iter()
-            .filter(|p| window.contains(**p))
-            .map(|p| (*p - window.min) / window.size)
-            .collect();
+    ///
+    /// # Errors
+    /// [`MeasureError::TooFew`] for fewer than 2 points in the window, [`MeasureError::OnBorder`].
+    pub fn new(points: &[DVec2], window: Window) -> Result<Self, MeasureError> {
+        let inside = window.scaled(points);
         if inside.len() < 2 {
-            return None;
+            return Err(MeasureError::TooFew { found: inside.len(), needed: 2 });
         }
         let principal = libm::sqrt(inside.len() as f64);
         let grid = ((16.0 * principal) as usize).next_power_of_two().clamp(64, MAX_GRID);
@@ -70,7 +68,7 @@ impl Periodogram {
             }
         }
         if squares == 0.0 {
-            return None;
+            return Err(MeasureError::OnBorder);
         }
         transform(&mut cells, grid);
         // What linear spreading does to a frequency, along one axis.
@@ -90,7 +88,7 @@ impl Periodogram {
                 power.push(norm / (attenuation * attenuation * squares));
             }
         }
-        Some(Self { limit, power, principal })
+        Ok(Self { limit, power, principal })
     }
 
     /// The greatest |k₀| and |k₁|, in cycles a window.
@@ -162,12 +160,10 @@ mod tests {
         (0..n).map(|_| DVec2::new(random.unit(), random.unit())).collect()
     }
 
-    const UNIT: Window = Window::new(DVec2::ZERO, DVec2::ONE);
-
     #[test]
     fn power_is_the_sum_over_points() {
         let points = random(300);
-        let periodogram = Periodogram::new(&points, UNIT).unwrap();
+        let periodogram = Periodogram::new(&points, Window::UNIT).unwrap();
         let limit = periodogram.limit() as i64;
         assert_eq!(limit, 34);
         for (k0, k1) in [(0, 0), (5, 0), (0, -7), (20, 13), (-34, 34), (-3, -30)] {
@@ -188,7 +184,7 @@ mod tests {
 
     #[test]
     fn white_noise_is_flat_and_a_lattice_has_one_ring() {
-        let rings = Periodogram::new(&random(20_000), UNIT).unwrap().rings();
+        let rings = Periodogram::new(&random(20_000), Window::UNIT).unwrap().rings();
         assert!(rings.iter().skip(20).all(|ring| (ring.power - 1.0).abs() < 0.5));
         let mean = rings.iter().map(|ring| ring.power).sum::<f64>() / rings.len() as f64;
         assert!((mean - 1.0).abs() < 0.02, "{mean}");
@@ -197,10 +193,13 @@ mod tests {
         let lattice: Vec<DVec2> = (0..side * side)
             .map(|i| (DVec2::new((i % side) as f64, (i / side) as f64) + 0.5) / side as f64)
             .collect();
-        let rings = Periodogram::new(&lattice, UNIT).unwrap().rings();
+        let rings = Periodogram::new(&lattice, Window::UNIT).unwrap().rings();
         let loudest = rings.iter().max_by(|a, b| a.power.total_cmp(&b.power)).unwrap();
         assert_eq!(loudest.frequency, 1.0);
         assert!(rings.iter().all(|ring| ring.frequency > 0.9 || ring.power < 1e-6));
-        assert_eq!(Periodogram::new(&lattice[..1], UNIT), None);
+        assert_eq!(
+            Periodogram::new(&lattice[..1], Window::UNIT),
+            Err(MeasureError::TooFew { found: 1, needed: 2 })
+        );
     }
 }

@@ -7,31 +7,38 @@
 
 use glam::DVec2;
 
-use super::Window;
+use super::{MeasureError, Window};
 
 /// Least |k| used, in cycles a window: below it the taper leaks the mean density.
 const LEAST_FREQUENCY: f64 = 3.0;
 
+/// Half the principal frequency of 64 points is 4 cycles: the least that leaves any.
+const LEAST_POINTS: usize = 64;
+
 /// Mean power at frequencies of at most half the principal one, white noise = 1.
 ///
 /// The principal frequency is √n cycles a window of n points (for a window that is not square, per
-/// axis in proportion). Frequencies below 3 cycles a window are left out. `None` for fewer than 64
-/// points in the window, where nothing is left. Time O(n²), exact: no grid, no aliasing.
-#[must_use]
-pub fn low_frequency_power(points: &[DVec2], window: Window) -> Option<f64> {
-    let inside: Vec<DVec2> = points
-        .iter()
-        .filter(|p| window.contains(**p))
-        .map(|p| (*p - window.min) / window.size)
-        .collect();
-    if inside.len() < 64 {
-        return None;
+/// axis in proportion). Frequencies below 3 cycles a window are left out. Time O(n²), exact: no grid, no
+/// aliasing.
+///
+/// # Errors
+/// [`MeasureError::TooFew`] for fewer than 64 points in the window, where no frequency is left;
+/// [`MeasureError::TooElongated`] for a window about n times as long as wide;
+/// [`MeasureError::OnBorder`].
+pub fn low_frequency_power(points: &[DVec2], window: Window) -> Result<f64, MeasureError> {
+    let inside = window.scaled(points);
+    if inside.len() < LEAST_POINTS {
+        return Err(MeasureError::TooFew { found: inside.len(), needed: LEAST_POINTS });
     }
     // In the unit square the axes count cycles a window; a frequency's length is physical.
     let principal = libm::sqrt(inside.len() as f64 / window.area());
     let limit = 0.5 * principal;
-    let power =
-        tapered_power(&inside, [limit * window.size.x, limit * window.size.y].map(|k| k as usize));
+    let limits = [limit * window.size.x, limit * window.size.y].map(|k| k as usize);
+    // The product of both limits is n/4, so this bounds the frequencies by about n as well.
+    if limits.iter().any(|k| *k > inside.len()) {
+        return Err(MeasureError::TooElongated { size: window.size });
+    }
+    let power = tapered_power(&inside, limits).ok_or(MeasureError::OnBorder)?;
     let (mut sum, mut count) = (0.0, 0u32);
     for (k, p) in power {
         let cycles = DVec2::new(f64::from(k[0]), f64::from(k[1]));
@@ -40,12 +47,15 @@ pub fn low_frequency_power(points: &[DVec2], window: Window) -> Option<f64> {
             count += 1;
         }
     }
-    (count > 0).then(|| sum / f64::from(count))
+    if count == 0 {
+        return Err(MeasureError::TooElongated { size: window.size });
+    }
+    Ok(sum / f64::from(count))
 }
 
 /// Power at every integer frequency of the half plane 0 ≤ k₀ ≤ `limit[0]`, |k₁| ≤ `limit[1]`, of
-/// points in the unit square.
-fn tapered_power(points: &[DVec2], limit: [usize; 2]) -> Vec<([i32; 2], f64)> {
+/// points in the unit square. `None` if none of them has a weight.
+fn tapered_power(points: &[DVec2], limit: [usize; 2]) -> Option<Vec<([i32; 2], f64)>> {
     let width = 2 * limit[1] + 1;
     let mut sums = vec![[0.0f64; 2]; (limit[0] + 1) * width];
     let mut normalization = 0.0;
@@ -68,13 +78,11 @@ fn tapered_power(points: &[DVec2], limit: [usize; 2]) -> Vec<([i32; 2], f64)> {
             }
         }
     }
-    sums.iter()
-        .enumerate()
-        .map(|(i, [re, im])| {
-            let k = [(i / width) as i32, (i % width) as i32 - limit[1] as i32];
-            (k, (re * re + im * im) / normalization)
-        })
-        .collect()
+    let power = sums.iter().enumerate().map(|(i, [re, im])| {
+        let k = [(i / width) as i32, (i % width) as i32 - limit[1] as i32];
+        (k, (re * re + im * im) / normalization)
+    });
+    (normalization > 0.0).then(|| power.collect())
 }
 
 /// exp(−2πi·turns).
@@ -87,14 +95,12 @@ fn unit(turns: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    const UNIT: Window = Window::new(DVec2::ZERO, DVec2::ONE);
-
     #[test]
     fn a_square_lattice_has_no_low_frequencies_and_white_noise_has_power_one() {
         let lattice: Vec<DVec2> = (0..4096)
             .map(|i| DVec2::new(f64::from(i % 64) + 0.5, f64::from(i / 64) + 0.5) / 64.0)
             .collect();
-        assert!(low_frequency_power(&lattice, UNIT).unwrap() < 1e-4);
+        assert!(low_frequency_power(&lattice, Window::UNIT).unwrap() < 1e-4);
 
         let mut state = 1u64;
         let mut uniform = || {
@@ -102,15 +108,18 @@ mod tests {
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
         let white: Vec<DVec2> = (0..4096).map(|_| DVec2::new(uniform(), uniform())).collect();
-        let power = low_frequency_power(&white, UNIT).unwrap();
+        let power = low_frequency_power(&white, Window::UNIT).unwrap();
         assert!((power - 1.0).abs() < 0.1, "{power}");
-        assert_eq!(low_frequency_power(&white[..63], UNIT), None);
+        assert_eq!(
+            low_frequency_power(&white[..63], Window::UNIT),
+            Err(MeasureError::TooFew { found: 63, needed: 64 })
+        );
         // A window of another shape and place sees the same points the same way.
         let moved = white
             .iter()
             .map(|p| *p * DVec2::splat(3.0) + DVec2::new(7.0, -2.0))
             .collect::<Vec<_>>();
-        let window = Window::new(DVec2::new(7.0, -2.0), DVec2::splat(3.0));
+        let window = Window::new(DVec2::new(7.0, -2.0), DVec2::splat(3.0)).unwrap();
         assert!((low_frequency_power(&moved, window).unwrap() - power).abs() < 1e-3);
     }
 }

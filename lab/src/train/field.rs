@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::ground::{BASE_LEVEL, density, edge};
+use super::place::{BASE_LEVEL, density, edge};
 use twelvefold::tiling::TileCounts;
 
 /// A threshold at every place. Lengths are in edges of the ground's base level.
@@ -24,7 +24,7 @@ pub trait Field: Sync {
         0.0
     }
 
-    /// Where a point of this rank and tile centre goes that relaxation moves to `moved`: a field with
+    /// Where a point of this rank and tile centre goes that displacements moves to `moved`: a field with
     /// edges may hold it back.
     fn settle(&self, centre: DVec2, rank: u64, moved: DVec2) -> DVec2 {
         let _ = (centre, rank);

@@ -6,8 +6,8 @@
 use glam::DVec2;
 
 use super::field::{Field, threshold_of_phase};
-use super::ground::density;
-use twelvefold::Region;
+use super::place::density;
+use twelvefold::Disc;
 use twelvefold::importance::{BilinearMap, ImageMap, Importance, InvalidPixels, StippleMap};
 
 /// T from an image of importance; its centre lies at 0, x right, y down.
@@ -100,7 +100,7 @@ impl<I: Importance + Sync> Field for Image<I> {
     fn bound(&self, p: DVec2, radius: f64) -> f64 {
         // A little more, for the rounding of places.
         let radius = radius * self.scale * (1.0 + 1e-9) + 1e-6;
-        let region = Region { centre: self.pixels(p), radius };
+        let region = Disc { centre: self.pixels(p), radius };
         self.importance.upper_bound(&region) * self.threshold_of_one
     }
 
@@ -116,7 +116,7 @@ impl<I: Importance + Sync> Field for Image<I> {
     fn settle(&self, centre: DVec2, rank: u64, moved: DVec2) -> DVec2 {
         let there = self.pixels(moved);
         let needed = rank as f64 / self.threshold_of_one;
-        let settled = self.importance.settle(self.pixels(centre), there, needed);
+        let settled = self.importance.constrain(self.pixels(centre), there, needed);
         if settled == there { moved } else { (settled - 0.5 * self.extent) / self.scale }
     }
 }
@@ -125,7 +125,7 @@ impl<I: Importance + Sync> Field for Image<I> {
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::train::report::{TEST_IMAGE_SIDE, edge_image, test_image};
+    use crate::train::evaluate::{TEST_IMAGE_SIDE, edge_image, test_image};
 
     #[test]
     fn images_that_ask_for_nothing_are_refused() {

@@ -1,13 +1,13 @@
-//! The points of a field on a ground, and where relaxation moves them.
+//! The points of a field on a ground, and where displacements moves them.
 
 use glam::{DVec2, Vec2};
 
 use super::field::{Field, level_of, spacing};
-use super::ground::{Descend, Ground, Region};
+use super::place::{Descend, Place, Region};
 use twelvefold::bake::class::Classes;
-use twelvefold::bake::relaxation::Relaxation;
+use twelvefold::bake::displacement::Displacements;
 use twelvefold::tiling::OutOfRange;
-use twelvefold::tiling::cyclotomic::SQRT_3;
+use twelvefold::tiling::numbers::SQRT_3;
 
 /// A point before it is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,13 +37,13 @@ pub struct Site {
 /// # Errors
 /// [`OutOfRange`] when the field needs more than 5 levels below the base level.
 pub fn sites(
-    ground: &Ground<'_>,
+    ground: &Place<'_>,
     field: &impl Field,
     region: Region,
 ) -> Result<Vec<Site>, OutOfRange> {
     let mut sites = Vec::new();
     ground.walk(region, &mut |node| {
-        let edge = super::ground::edge(node.level);
+        let edge = super::place::edge(node.level);
         let bound = field.bound(node.centre, edge * core::f64::consts::FRAC_1_SQRT_2);
         let tiles = twelvefold::tiling::TileCounts::HEXAGON.all()[node.level] as f64;
         if region.touches(node.centre, 0.0) {
@@ -58,7 +58,7 @@ pub fn sites(
                     edge,
                     rotation: node.rotations[1],
                     classes: node.classes,
-                    tau: (local / above).clamp(1.0, twelvefold::bake::relaxation::DELTA.into()),
+                    tau: (local / above).clamp(1.0, twelvefold::bake::displacement::DELTA.into()),
                     detail: field.detail(node.centre),
                     spacing: spacing(local),
                 });
@@ -72,7 +72,7 @@ pub fn sites(
 impl Site {
     /// Where the table moves the point, in base edges.
     #[must_use]
-    pub fn relaxed(&self, table: &Relaxation) -> DVec2 {
+    pub fn relaxed(&self, table: &Displacements) -> DVec2 {
         let vector = table.vector(&self.classes, self.tau, self.detail);
         self.centre + turned(Vec2::from(vector).as_dvec2(), self.rotation) * self.edge
     }
@@ -81,7 +81,7 @@ impl Site {
 impl Site {
     /// Where the point goes: [`relaxed`](Self::relaxed), held back by the field's edges.
     #[must_use]
-    pub fn settled(&self, table: &Relaxation, field: &impl Field) -> DVec2 {
+    pub fn settled(&self, table: &Displacements, field: &impl Field) -> DVec2 {
         field.settle(self.centre, self.rank, self.relaxed(table))
     }
 }
@@ -107,7 +107,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::train::field::{Constant, threshold_of_phase};
-    use crate::train::ground::{BASE_LEVEL, density};
+    use crate::train::place::{BASE_LEVEL, density};
     use twelvefold::tiling::{Digits, FCode, Rules, Tile, TileType};
 
     fn rules() -> Rules {
@@ -121,7 +121,7 @@ mod tests {
         for (tau, level) in [(3.3, BASE_LEVEL), (0.4, BASE_LEVEL - 1), (20.0, BASE_LEVEL + 1)] {
             let field = Constant(threshold_of_phase(tau));
             let radius = 20.0 * spacing(field.0);
-            let ground = Ground::random(&rules, radius, &mut Random::new(5, &[])).unwrap();
+            let ground = Place::random(&rules, radius, &mut Random::new(5, &[])).unwrap();
             let sites = sites(&ground, &field, Region::Disc(radius)).unwrap();
             let expected = density(field.0) * core::f64::consts::PI * radius * radius;
             assert!(

@@ -2,7 +2,7 @@
 
 use super::site::Site;
 use twelvefold::bake::class::{self, class_count};
-use twelvefold::bake::relaxation::{DELTA, Layer, RelaxationError, Slot, born_classes};
+use twelvefold::bake::displacement::{DELTA, DisplacementError, Layer, Slot, born_classes};
 use twelvefold::tiling::Rules;
 
 /// One slot's place on the grid.
@@ -148,8 +148,8 @@ impl Table {
     /// The finished layer: int8 with one scale a slot, without the classes that are not yet born.
     ///
     /// # Errors
-    /// [`RelaxationError`] if the grid breaks a rule of [`Layer`].
-    pub fn quantized(&self, layer: u8) -> Result<Layer, RelaxationError> {
+    /// [`DisplacementError`] if the grid breaks a rule of [`Layer`].
+    pub fn quantized(&self, layer: u8) -> Result<Layer, DisplacementError> {
         let last = self.slots.len() - 1;
         let slots = self.slots.iter().enumerate().map(|(i, spec)| {
             let generations = spec.generations as u8;

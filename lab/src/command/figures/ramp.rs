@@ -1,11 +1,9 @@
 //! Figure 5: a gray ramp and its dots.
 
-use std::ops::ControlFlow;
-
 use glam::DVec2;
 use twelvefold::importance::Function;
 use twelvefold::tiling::Rules;
-use twelvefold::{Amount, Domain, Placement, Region, Sampling};
+use twelvefold::{Amount, Disc, Domain, Placement, Sampling};
 
 use super::Result;
 use super::canvas::Canvas;
@@ -30,7 +28,7 @@ pub(super) fn ramp(_: &Rules) -> Result<String> {
     let darkness = |x: f64| ((x - corner.x) / SIZE.x).clamp(0.0, 1.0);
     let importance = Function::new(
         |at: DVec2| darkness(at.x),
-        |region: &Region| darkness(region.centre.x + region.radius),
+        |region: &Disc| darkness(region.centre.x + region.radius),
     )
     .with_integral(domain.area() / 2.0);
     let placement = Placement::new(domain, 3);
@@ -39,10 +37,9 @@ pub(super) fn ramp(_: &Rules) -> Result<String> {
     let radius = (0.5 / (sampling.density() * std::f64::consts::PI)).sqrt();
     page.rectangle(corner, SIZE, "fill=\"none\" stroke=\"#222\"");
     page.open_clipped("dots", corner, SIZE, "class=\"points\" fill=\"#000\"");
-    sampling.visit::<DVec2>(|sample| {
-        page.circle(sample.position, radius, "");
-        ControlFlow::Continue(())
-    })?;
+    for sample in sampling.points::<DVec2>()? {
+        page.circle(sample?.position, radius, "");
+    }
     page.close();
     Ok(page.finish())
 }

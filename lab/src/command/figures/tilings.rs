@@ -1,7 +1,5 @@
 //! Figures 1 and 2: the square-triangle tiling with its dual, two levels superimposed, and points.
 
-use std::ops::ControlFlow;
-
 use glam::DVec2;
 use twelvefold::importance::Constant;
 use twelvefold::tiling::{Rules, TileType};
@@ -115,10 +113,9 @@ fn draw_points(page: &mut Canvas, corner: DVec2, side: f64) -> Result<()> {
     let placement = Placement::new(Domain::new(corner, size)?, SEED);
     let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(2000.0))?;
     page.open_clipped("points", corner, size, "class=\"points\" fill=\"#111\"");
-    sampling.visit::<DVec2>(|sample| {
-        page.circle(sample.position, 2.4, "");
-        ControlFlow::Continue(())
-    })?;
+    for sample in sampling.points::<DVec2>()? {
+        page.circle(sample?.position, 2.4, "");
+    }
     page.close();
     page.rectangle(corner, size, "fill=\"none\" stroke=\"#222\"");
     Ok(())

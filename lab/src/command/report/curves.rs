@@ -6,6 +6,8 @@ use std::fmt::Write as _;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::samplers::Kind;
+
 /// Error and time of one sampler at one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Measured {
@@ -20,6 +22,7 @@ pub(crate) struct Measured {
 #[derive(Clone, Debug)]
 pub(crate) struct Curve {
     pub(crate) sampler: &'static str,
+    pub(crate) kind: Kind,
     pub(crate) points: Vec<Measured>,
 }
 
@@ -200,7 +203,7 @@ fn style(i: usize, curve: &Curve) -> ShapeStyle {
         (0x9e, 0xb9, 0xf3),
     ];
     let (red, green, blue) = COLORS[i % COLORS.len()];
-    let width = if curve.sampler.starts_with("ours") { 4 } else { 2 };
+    let width = if curve.kind != Kind::Rival { 4 } else { 2 };
     RGBColor(red, green, blue).stroke_width(width)
 }
 
@@ -228,8 +231,8 @@ mod tests {
         Scene {
             name: "test".to_owned(),
             curves: vec![
-                Curve { sampler: "ours", points: points(-0.75) },
-                Curve { sampler: "white", points: points(-0.5) },
+                Curve { sampler: "ours", kind: Kind::Ours, points: points(-0.75) },
+                Curve { sampler: "white", kind: Kind::Rival, points: points(-0.5) },
             ],
         }
     }

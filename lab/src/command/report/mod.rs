@@ -1,6 +1,5 @@
 //! `twelvefold report`: what a sample costs and how much error it leaves, against what else is in use.
 
-mod classic;
 mod curves;
 mod samplers;
 mod scenes;
@@ -19,7 +18,7 @@ use twelvefold::{
 
 use crate::args::ReportOptions;
 use curves::{Curve, Measured, Scene};
-use samplers::{FOLLOWING, Target, UNIFORM};
+use samplers::{FOLLOWING, Kind, Target, UNIFORM};
 use scenes::{Instance, Lighting, PLANES, skies};
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::Output;
@@ -40,6 +39,14 @@ const LEAST_DOTS: usize = 256;
 /// Placements for a tone error, which is itself a mean over a picture.
 const TONE_SEEDS: u64 = 4;
 
+/// A part of the report: what its files are called, its title, what is to be said, and the scenes.
+struct Group {
+    name: &'static str,
+    title: &'static str,
+    remark: &'static str,
+    scenes: Vec<Scene>,
+}
+
 /// Runs the subcommand.
 pub(crate) fn run(options: &ReportOptions) -> Result<(), Failure> {
     let folder = &options.output;
@@ -48,71 +55,86 @@ pub(crate) fn run(options: &ReportOptions) -> Result<(), Failure> {
     let say = |text: &str| {
         if !options.quiet {
             // Stderr may be closed; the report is written all the same.
-            let _ = writeln!(std::io::stderr(), "twelvefold: {text}");
+            let _ = writeln!(std::io::stderr(), "twelvefold-lab: {text}");
         }
     };
 
-    let mut groups = Vec::new();
+    // What cannot be read is known before anything is measured.
+    let photo = photo(options)?;
+    let lights = lights(options)?;
     say("functions of the square");
-    groups.push(("uniform", "Constant importance", UNIFORM_REMARK, uniform_scenes(&sizes)));
-    let mut maps = skies().map_err(|error| Failure::about("skies", error))?;
-    let mut names = Vec::new();
-    for path in &options.environments {
-        let light = picture::read_radiance(path).map_err(|error| Failure::at(path, error))?;
-        let map = EnvironmentMap::new(
-            light.width,
-            light.height,
-            light.pixels,
-            InvalidPixels::ZeroNegative,
-        )
-        .map_err(|error| Failure::at(path, error))?;
-        names.push(path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
-        maps.push(("", map));
+    let mut groups = vec![Group {
+        name: "uniform",
+        title: "Constant importance",
+        remark: UNIFORM_REMARK,
+        scenes: uniform_scenes(&sizes),
+    }];
+    let mut scenes = Vec::new();
+    for light in &lights {
+        say(&format!("light of {}", light.name));
+        scenes.extend(lighting_scenes(light, &sizes));
     }
-    let built_in = maps.len() - names.len();
-    let mut lit = Vec::new();
-    for (i, (name, map)) in maps.into_iter().enumerate() {
-        let name = match i.checked_sub(built_in) {
-            Some(i) => names[i].clone(),
-            None => name.to_owned(),
-        };
-        say(&format!("light of {name}"));
-        lit.extend(lighting_scenes(&Lighting::new(name, map), &sizes));
-    }
-    groups.push(("lighting", "Light of an environment on eight surfaces", LIGHTING_REMARK, lit));
-
-    let photo = match &options.photo {
-        None => tone::drawing(),
-        Some(path) => {
-            let tone = Tone { linear: false, invert: false };
-            let photo = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
-            ImageMap::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
-                .map_err(|error| Failure::at(path, error))?
-        }
-    };
+    let title = "Light of an environment on eight surfaces";
+    groups.push(Group { name: "lighting", title, remark: LIGHTING_REMARK, scenes });
     say("tone of a stippled photograph");
-    groups.push(("tone", "Tone of a stippled picture", TONE_REMARK, tone_scene(&photo, &sizes)));
+    let (title, scenes) = ("Tone of a stippled picture", tone_scene(&photo, &sizes));
+    groups.push(Group { name: "tone", title, remark: TONE_REMARK, scenes });
 
-    let mut csv = String::from("group,scene,sampler,n,error,seconds\n");
-    let mut markdown = String::from(INTRODUCTION);
-    for (group, title, remark, scenes) in &groups {
-        markdown += &format!("## {title}\n\n{remark}\n\n");
-        for (i, scene) in scenes.iter().enumerate() {
-            scene.csv(group, &mut csv);
-            markdown += &scene.markdown(&sizes, &TIMED);
-            let picture = format!("{group}-{}.svg", i + 1);
-            markdown += &format!("![{}]({picture})\n\n", scene.name);
-            let svg = scene.svg().map_err(|error| Failure::about("plot", error))?;
-            write_file(&folder.join(picture), &svg)?;
-        }
-        markdown += &winners(scenes, sizes.last().copied().unwrap_or(0));
-    }
+    let (mut markdown, csv) = write_scenes(folder, &groups, &sizes)?;
     say("variants");
     markdown += VARIANTS;
     let timed: Vec<usize> = TIMED.into_iter().chain([1 << 18]).collect();
     markdown += &variants::table(&photo, &timed);
     write_file(&folder.join("report.csv"), &csv)?;
     write_file(&folder.join("report.md"), &markdown)
+}
+
+/// The built-in skies, then the environment maps that were named.
+fn lights(options: &ReportOptions) -> Result<Vec<Lighting>, Failure> {
+    let skies = skies().map_err(|error| Failure::about("skies", error))?;
+    let mut lights: Vec<Lighting> =
+        skies.into_iter().map(|(name, map)| Lighting::new(name.to_owned(), map)).collect();
+    for path in &options.environments {
+        let light = picture::read_radiance(path).map_err(|error| Failure::at(path, error))?;
+        let (width, height) = (light.width, light.height);
+        let map = EnvironmentMap::new(width, height, light.pixels, InvalidPixels::ZeroNegative)
+            .map_err(|error| Failure::at(path, error))?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        lights.push(Lighting::new(name, map));
+    }
+    Ok(lights)
+}
+
+/// The photograph whose tone is followed.
+fn photo(options: &ReportOptions) -> Result<ImageMap, Failure> {
+    let Some(path) = &options.photo else { return Ok(tone::drawing()) };
+    let tone = Tone { linear: false, invert: false, ..Tone::default() };
+    let photo = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
+    ImageMap::new(photo.width, photo.height, photo.importance, InvalidPixels::Reject)
+        .map_err(|error| Failure::at(path, error))
+}
+
+/// Writes a picture a scene; returns what report.md says of them, and report.csv.
+fn write_scenes(
+    folder: &Path,
+    groups: &[Group],
+    sizes: &[usize],
+) -> Result<(String, String), Failure> {
+    let mut csv = String::from("group,scene,sampler,n,error,seconds\n");
+    let mut markdown = String::from(INTRODUCTION);
+    for Group { name, title, remark, scenes } in groups {
+        markdown += &format!("## {title}\n\n{remark}\n\n");
+        for (i, scene) in scenes.iter().enumerate() {
+            scene.csv(name, &mut csv);
+            markdown += &scene.markdown(sizes, &TIMED);
+            let picture = format!("{name}-{}.svg", i + 1);
+            markdown += &format!("![{}]({picture})\n\n", scene.name);
+            let svg = scene.svg().map_err(|error| Failure::about("plot", error))?;
+            write_file(&folder.join(picture), &svg)?;
+        }
+        markdown += &winners(scenes, sizes.last().copied().unwrap_or(0));
+    }
+    Ok((markdown, csv))
 }
 
 const INTRODUCTION: &str = "\
@@ -157,20 +179,18 @@ fn winners(scenes: &[Scene], n: usize) -> String {
     let mut text = format!("At {n} samples the least error has:\n\n");
     for scene in scenes {
         let at = |curve: &Curve| curve.points.iter().find(|m| m.n == n).map(|m| m.error);
-        let mut ranked: Vec<(f64, &str)> =
-            scene.curves.iter().filter_map(|c| Some((at(c)?, c.sampler))).collect();
+        let mut ranked: Vec<(f64, &Curve)> =
+            scene.curves.iter().filter_map(|curve| Some((at(curve)?, curve))).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let ours = ranked.iter().find(|(_, name)| name.starts_with("ours"));
-        if let (Some((best, winner)), Some((error, name))) = (ranked.first(), ours) {
-            text += &if winner.starts_with("ours") {
-                format!("- {}: {winner}\n", scene.name)
-            } else {
-                let (factor, name) = (error / best, name.trim_start_matches("ours, "));
-                format!(
-                    "- {}: {winner}; the best of ours, {name}, has {factor:.2} times as much\n",
-                    scene.name
-                )
-            };
+        let ours = ranked.iter().find(|(_, curve)| curve.kind != Kind::Rival);
+        if let (Some((least, best)), Some((error, ours))) = (ranked.first(), ours) {
+            text += &format!("- {}: {}", scene.name, best.sampler);
+            if best.kind == Kind::Rival {
+                let name = ours.sampler.trim_start_matches("ours, ");
+                text +=
+                    &format!("; the best of ours, {name}, has {:.2} times as much", error / least);
+            }
+            text += "\n";
         }
     }
     text += "\n";
@@ -245,7 +265,7 @@ fn uniform_scenes(sizes: &[usize]) -> Vec<Scene> {
             }
         }
         for (scene, points) in scenes.iter_mut().zip(curves) {
-            scene.curves.push(Curve { sampler: sampler.name, points });
+            scene.curves.push(Curve { sampler: sampler.name, kind: sampler.kind, points });
         }
     }
     scenes
@@ -275,7 +295,7 @@ fn lighting_scenes(lighting: &Lighting, sizes: &[usize]) -> Vec<Scene> {
             }
         }
         for (scene, points) in scenes.iter_mut().zip(curves) {
-            scene.curves.push(Curve { sampler: sampler.name, points });
+            scene.curves.push(Curve { sampler: sampler.name, kind: sampler.kind, points });
         }
     }
     scenes.into()
@@ -287,7 +307,7 @@ fn tone_scene(photo: &ImageMap, sizes: &[usize]) -> Vec<Scene> {
     let mut scene = Scene { name: "root-mean-square tone error".to_owned(), curves: Vec::new() };
     for sampler in &FOLLOWING {
         // Weights do not show in a stippling: where only they differ, the dots are the same.
-        if ["ours, normalised", "ours, smoothed", "ours, post-stratified"].contains(&sampler.name) {
+        if sampler.kind == Kind::Reweighted {
             continue;
         }
         let mut points = Vec::new();
@@ -301,7 +321,7 @@ fn tone_scene(photo: &ImageMap, sizes: &[usize]) -> Vec<Scene> {
             }
             points.extend(gathered.measured(n));
         }
-        scene.curves.push(Curve { sampler: sampler.name, points });
+        scene.curves.push(Curve { sampler: sampler.name, kind: sampler.kind, points });
     }
     scene.curves.insert(1, relaxed_dots(photo, sizes));
     vec![scene]
@@ -326,7 +346,7 @@ fn relaxed_dots(photo: &ImageMap, sizes: &[usize]) -> Curve {
         }
         points.extend(gathered.measured(n));
     }
-    Curve { sampler: "ours, relaxed", points }
+    Curve { sampler: "ours, relaxed", kind: Kind::Ours, points }
 }
 
 /// Writes a file of the report as a whole.

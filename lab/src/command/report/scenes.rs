@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use twelvefold::{EnvironmentError, EnvironmentMap, InvalidPixels};
 
-use super::classic::Random;
+use twelvefold_lab::random::Random;
 
 /// A function of the unit square and its integral.
 pub(crate) type Instance = (Box<dyn Fn(DVec2) -> f64>, f64);
@@ -20,7 +20,7 @@ pub(crate) const PLANES: [Plane; 4] = [
         name: "smooth bump",
         instance: |seed| {
             // Sixteen standard deviations fit: the rest is below rounding.
-            let centre = DVec2::splat(0.5) + 0.02 * Random::new(seed).point();
+            let centre = DVec2::splat(0.5) + 0.02 * Random::new(seed, &[]).point();
             let width = 0.06;
             let bump = move |p: DVec2| (-p.distance_squared(centre) / (2.0 * width * width)).exp();
             (Box::new(bump), std::f64::consts::TAU * width * width)
@@ -29,7 +29,7 @@ pub(crate) const PLANES: [Plane; 4] = [
     Plane {
         name: "disc",
         instance: |seed| {
-            let centre = DVec2::splat(0.4) + 0.2 * Random::new(seed).point();
+            let centre = DVec2::splat(0.4) + 0.2 * Random::new(seed, &[]).point();
             let radius = 0.3;
             let disc = move |p: DVec2| f64::from(p.distance(centre) < radius);
             (Box::new(disc), std::f64::consts::PI * radius * radius)
@@ -39,7 +39,7 @@ pub(crate) const PLANES: [Plane; 4] = [
         name: "half-plane",
         instance: |seed| {
             // Through the centre at any angle: half of the square.
-            let angle = std::f64::consts::TAU * Random::new(seed).unit();
+            let angle = std::f64::consts::TAU * Random::new(seed, &[]).unit();
             let normal = DVec2::from_angle(angle);
             let half = move |p: DVec2| f64::from(normal.dot(p - 0.5) < 0.0);
             (Box::new(half), 0.5)
@@ -48,7 +48,7 @@ pub(crate) const PLANES: [Plane; 4] = [
     Plane {
         name: "zone plate",
         instance: |seed| {
-            let shift = Random::new(seed).unit();
+            let shift = Random::new(seed, &[]).unit();
             let wave = move |r2: f64| std::f64::consts::TAU * (40.0 * r2 + shift);
             let plate = move |p: DVec2| 1.0 + wave(p.length_squared()).cos();
             // The midpoint rule at a fine step: the fastest wave is 160 periods a unit.
@@ -84,7 +84,7 @@ const OCCLUDER: f64 = 0.766;
 
 impl Lighting {
     pub(crate) fn new(name: String, map: EnvironmentMap) -> Self {
-        let mut random = Random::new(12);
+        let mut random = Random::new(12, &[]);
         let mut direction = || {
             let (z, turn) = (2.0 * random.unit() - 1.0, std::f64::consts::TAU * random.unit());
             let sine = (1.0 - z * z).sqrt();

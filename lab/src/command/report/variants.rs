@@ -51,9 +51,11 @@ pub(crate) fn table(picture: &ImageMap, sizes: &[usize]) -> String {
     text += &"---:|".repeat(2 * sizes.len() + 2);
     text += "\n";
     let built_in = Tables::built_in();
-    let relaxation = built_in.to_relaxation();
+    let displacements = built_in.to_relaxation();
     for depth in 1..=bake::MAX_DEPTH {
-        let Ok(bytes) = bake::bake(&built_in.rules(), depth, relaxation.as_ref()) else { continue };
+        let Ok(bytes) = bake::bake(&built_in.rules(), depth, displacements.as_ref()) else {
+            continue;
+        };
         let Ok(tables) = Tables::from_bytes(&bytes) else { continue };
         let as_built = depth == built_in.depth();
         let mut rows = vec![("fixed, f32", Way::Fill32), ("relaxed, f32", Way::Relaxed32)];
@@ -78,7 +80,7 @@ pub(crate) fn table(picture: &ImageMap, sizes: &[usize]) -> String {
 }
 
 fn row(text: &mut String, picture: &ImageMap, sizes: &[usize], tables: Tables<'_>, way: Way) {
-    let constant = Domain::unit();
+    let constant = Domain::UNIT;
     for n in sizes {
         // Without texture there is nothing to make ready, and every bound is exact.
         let same = matches!(way, Way::Stipple32 | Way::Probed32);
@@ -165,7 +167,7 @@ fn positions<I: Importance>(
     tables: Tables<'_>,
     way: Way,
 ) -> Option<Vec<DVec2>> {
-    let placement = Placement::with_tables(domain, seed, tables);
+    let placement = Placement::new_in(domain, seed, tables);
     let amount = Amount::Points(SIZE as f64);
     let sampling = Sampling::new(&placement, importance, amount).ok()?;
     match way {
@@ -198,7 +200,7 @@ fn nanoseconds<I: Importance>(
     tables: Tables<'_>,
     way: Way,
 ) -> Option<f64> {
-    let placement = Placement::with_tables(domain, 1, tables);
+    let placement = Placement::new_in(domain, 1, tables);
     let sampling = Sampling::new(&placement, importance, Amount::Points(n as f64)).ok()?;
     let (found, seconds) = match way {
         Way::Fill32 | Way::Probed32 => fill::<I, Vec2>(&sampling, n)?,

@@ -1,0 +1,227 @@
+//! Where the dots go: a sampling of the picture, refined unless it must stream.
+
+use std::fmt;
+
+use glam::DVec2;
+use twelvefold::estimate::{ExactError, exactly};
+use twelvefold::refine::{ITERATIONS, RefineError, Refiner};
+use twelvefold::{
+    Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Placement, Sample, Sampling,
+    SamplingError, StippleMap,
+};
+use twelvefold_files::picture::Picture;
+
+use crate::args::Centers;
+
+/// From this many dots on, they are drawn as they come, unless refinement is asked for: a list of them all,
+/// and what refining needs beside it, would take a hundred bytes a dot.
+pub(crate) const STREAMED: f64 = 2_000_000.0;
+
+/// What is wanted of the dots.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wish {
+    pub(crate) count: Count,
+    pub(crate) centers: Centers,
+    pub(crate) seed: u64,
+    /// Iterations.
+    pub(crate) refine: usize,
+    /// In an order of which each beginning is itself a good set.
+    pub(crate) ranked: bool,
+}
+
+/// A number of dots.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Count {
+    About(f64),
+    Exactly(usize),
+}
+
+impl Count {
+    pub(crate) fn number(self) -> f64 {
+        match self {
+            Self::About(count) => count,
+            Self::Exactly(count) => count as f64,
+        }
+    }
+}
+
+/// The iterations for so many dots, if nobody says.
+pub(crate) fn default_iterations(count: f64) -> usize {
+    if count < STREAMED { ITERATIONS } else { 0 }
+}
+
+/// Why there are no dots, or no more of them.
+#[derive(Debug)]
+pub(crate) enum DotsError<E> {
+    Map(MapError),
+    Sampling(SamplingError),
+    Exact(ExactError),
+    Refine(RefineError),
+    /// There is no memory for a list of so many dots.
+    Memory(usize),
+    /// Whoever takes the dots failed.
+    Taker(E),
+}
+
+impl<E: fmt::Display> fmt::Display for DotsError<E> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Map(error) => error.fmt(out),
+            Self::Sampling(error) => error.fmt(out),
+            Self::Exact(error) => error.fmt(out),
+            Self::Refine(error) => error.fmt(out),
+            Self::Memory(count) => {
+                write!(
+                    out,
+                    "there is no memory for {} MiB of dots",
+                    (count * size_of::<DVec2>()) >> 20
+                )
+            }
+            Self::Taker(error) => error.fmt(out),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
+
+/// Hands every dot of a picture, in pixels, to `take`; says after each iteration of refinement that it is
+/// done. Keeps no list if they are neither refined nor ranked.
+///
+/// # Errors
+/// [`DotsError`], and what `take` fails with.
+pub(crate) fn place<E>(
+    picture: Picture,
+    wish: Wish,
+    iteration: impl FnMut(),
+    mut take: impl FnMut(DVec2) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    if wish.refine == 0 && !wish.ranked {
+        return raw(picture, wish, |dot, _| take(dot));
+    }
+    let dots = list(picture, wish, iteration)?;
+    dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
+}
+
+/// Every dot of a picture, in pixels; says after each iteration of refinement that it is done.
+///
+/// # Errors
+/// [`DotsError`].
+pub(crate) fn list<E>(
+    picture: Picture,
+    wish: Wish,
+    iteration: impl FnMut(),
+) -> Result<Vec<DVec2>, DotsError<E>> {
+    if wish.refine == 0 {
+        return unrefined(picture, wish);
+    }
+    let mut dots = unrefined(copy(&picture)?, wish)?;
+    refined(&picture, &mut dots, wish.refine, iteration).map_err(DotsError::Refine)?;
+    Ok(dots)
+}
+
+/// The list of the dots as the sampling gives them, ranked if that is wished.
+fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>> {
+    let mut dots = Vec::new();
+    let mut keys: Vec<f64> = Vec::new();
+    raw(picture, wish, |dot, key| {
+        dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
+        dots.push(dot);
+        if wish.ranked {
+            keys.try_reserve(1).map_err(|_| dots.len())?;
+            keys.push(key);
+        }
+        Ok(())
+    })
+    .map_err(|error| match error {
+        DotsError::Taker(count) => DotsError::Memory(count),
+        DotsError::Map(error) => DotsError::Map(error),
+        DotsError::Sampling(error) => DotsError::Sampling(error),
+        DotsError::Exact(error) => DotsError::Exact(error),
+        DotsError::Refine(error) => DotsError::Refine(error),
+        DotsError::Memory(count) => DotsError::Memory(count),
+    })?;
+    if wish.ranked {
+        let mut order: Vec<usize> = (0..dots.len()).collect();
+        order.sort_by(|&one, &other| keys[one].total_cmp(&keys[other]));
+        dots = order.into_iter().map(|index| dots[index]).collect();
+    }
+    Ok(dots)
+}
+
+/// Refines dots where they are.
+fn refined(
+    picture: &Picture,
+    dots: &mut [DVec2],
+    iterations: usize,
+    mut iteration: impl FnMut(),
+) -> Result<(), RefineError> {
+    let mut refiner = Refiner::new(picture.width, picture.height, &picture.importance, dots)?;
+    for _ in 0..iterations {
+        refiner.step();
+        iteration();
+    }
+    refiner.write(dots)
+}
+
+/// A picture for a map, which keeps its pixels.
+fn copy<E>(picture: &Picture) -> Result<Picture, DotsError<E>> {
+    let mut importance = Vec::new();
+    let pixels = picture.importance.len();
+    importance.try_reserve_exact(pixels).map_err(|_| DotsError::Memory(pixels))?;
+    importance.extend_from_slice(&picture.importance);
+    Ok(Picture { importance, warnings: Vec::new(), ..*picture })
+}
+
+/// The dots as the sampling gives them, each with a key by which they are ranked if that is wished.
+fn raw<E>(
+    Picture { width, height, importance, .. }: Picture,
+    wish: Wish,
+    mut take: impl FnMut(DVec2, f64) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    let invalid = InvalidPixels::Reject;
+    match (wish.count, wish.centers) {
+        (Count::Exactly(count), _) => {
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let dots =
+                exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
+            let mut keys = (0u32..).map(f64::from);
+            dots.iter().try_for_each(|dot| {
+                take(dot.position, keys.next().unwrap_or(f64::MAX)).map_err(DotsError::Taker)
+            })
+        }
+        (Count::About(count), Centers::Fixed) => {
+            let map = ImageMap::new(width, height, importance, invalid).map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(count));
+            stream(&sampling.map_err(DotsError::Sampling)?, &map, wish.ranked, take)
+        }
+        (Count::About(count), Centers::Relaxed) => {
+            let map = StippleMap::new(width, height, importance, invalid, count)
+                .map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let sampling = Sampling::new(&placement, &map, Amount::Points(count))
+                .and_then(Sampling::relaxed)
+                .map_err(DotsError::Sampling)?;
+            stream(&sampling, &map, wish.ranked, take)
+        }
+    }
+}
+
+/// Every point of a sampling.
+fn stream<I: Importance, E>(
+    sampling: &Sampling<'_, I>,
+    map: &I,
+    ranked: bool,
+    mut take: impl FnMut(DVec2, f64) -> Result<(), E>,
+) -> Result<(), DotsError<E>> {
+    // In 64 bits because 32 would be too few in a picture with sides of very different length.
+    for point in sampling.points().map_err(DotsError::Sampling)? {
+        let Sample::<DVec2> { position, rank } = point.map_err(DotsError::Sampling)?;
+        // The density at which it appears; a relaxed point may have left what it was accepted by.
+        let key =
+            if ranked { rank as f64 / map.value(position).max(f64::MIN_POSITIVE) } else { 0.0 };
+        take(position, key).map_err(DotsError::Taker)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,101 @@
+//! Where the bytes come from: a file, or standard input held in memory.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::{PictureError, limits};
+
+/// Bytes that can be read again.
+#[derive(Debug)]
+pub(super) enum Source {
+    File(BufReader<File>),
+    Memory(Cursor<Vec<u8>>),
+}
+
+impl Source {
+    /// The regular file at `path`, or for `-` all of standard input; at most the memory limit.
+    pub(super) fn open(path: &Path) -> Result<Self, PictureError> {
+        if path.as_os_str() == "-" {
+            return Self::collect(io::stdin().lock());
+        }
+        // Opening a pipe would wait for somebody to write to it.
+        let metadata = fs::metadata(path)?;
+        if !metadata.is_file() {
+            return Err(PictureError::NotAFile);
+        }
+        // Some decoders hold the whole file, or a header as long as the file.
+        if metadata.len() > limits::MEMORY_LIMIT {
+            return Err(PictureError::TooLong { bytes: metadata.len() });
+        }
+        Ok(Self::File(BufReader::new(File::open(path)?)))
+    }
+
+    /// All that a stream gives.
+    fn collect(stream: impl Read) -> Result<Self, PictureError> {
+        let mut bytes = Vec::new();
+        let mut stream = stream.take(limits::MEMORY_LIMIT + 1);
+        let mut part = vec![0; 1 << 16];
+        loop {
+            let count = match stream.read(&mut part) {
+                Ok(0) => break,
+                Ok(count) => count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error.into()),
+            };
+            let length = bytes.len() as u64 + count as u64;
+            if length > limits::MEMORY_LIMIT || bytes.try_reserve(count).is_err() {
+                return Err(PictureError::TooLong { bytes: length });
+            }
+            bytes.extend_from_slice(&part[..count]);
+        }
+        Ok(Self::Memory(Cursor::new(bytes)))
+    }
+
+    /// All bytes, from the first one.
+    pub(super) fn into_bytes(mut self) -> Result<Vec<u8>, PictureError> {
+        self.rewind()?;
+        match self {
+            Self::Memory(cursor) => Ok(cursor.into_inner()),
+            Self::File(mut file) => {
+                let mut bytes = Vec::new();
+                file.read_to_end(&mut bytes)?;
+                Ok(bytes)
+            }
+        }
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(buffer),
+            Self::Memory(bytes) => bytes.read(buffer),
+        }
+    }
+}
+
+impl BufRead for Source {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        match self {
+            Self::File(file) => file.fill_buf(),
+            Self::Memory(bytes) => bytes.fill_buf(),
+        }
+    }
+
+    fn consume(&mut self, amount: usize) {
+        match self {
+            Self::File(file) => file.consume(amount),
+            Self::Memory(bytes) => bytes.consume(amount),
+        }
+    }
+}
+
+impl Seek for Source {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Memory(bytes) => bytes.seek(to),
+        }
+    }
+}

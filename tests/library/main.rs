@@ -1,0 +1,14 @@
+//! The library from outside: one program, since each is linked by itself.
+
+mod common;
+mod digits;
+mod estimates;
+mod floors;
+mod frame;
+mod hard_cases;
+mod invariance;
+mod laws;
+mod numbering;
+mod tables;
+mod tiling;
+mod value_stability;
