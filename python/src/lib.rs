@@ -1,15 +1,20 @@
 //! The Python door to twelvefold: arrays in, arrays out, and nothing of the sampling itself.
 //!
-//! Python's lock is released while points are made; between blocks of points Python may interrupt.
+//! [`arguments`], [`arrays`] and [`tone`] read what Python hands in; [`work`] runs the library without
+//! Python's lock and listens for Ctrl-C; [`output`] hands arrays back. One file for each function between.
 
+mod arguments;
 mod arrays;
-
 mod environment;
 mod error;
-mod interrupt;
-
+mod exact;
+mod measure;
+mod output;
 mod placement;
 mod sampling;
+mod stipple;
+mod tone;
+mod work;
 
 use pyo3::prelude::*;
 
@@ -19,7 +24,9 @@ use pyo3::prelude::*;
 fn native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<placement::Placement>()?;
-    module.add_function(wrap_pyfunction!(sampling::sample, module)?)?;
-    module.add_function(wrap_pyfunction!(sampling::exactly, module)?)?;
-    module.add_function(wrap_pyfunction!(environment::environment, module)?)
+    module.add_function(wrap_pyfunction!(stipple::stipple, module)?)?;
+    module.add_function(wrap_pyfunction!(placement::sample, module)?)?;
+    module.add_function(wrap_pyfunction!(placement::exactly, module)?)?;
+    module.add_function(wrap_pyfunction!(environment::environment, module)?)?;
+    module.add_function(wrap_pyfunction!(measure::measure, module)?)
 }

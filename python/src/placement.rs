@@ -1,69 +1,120 @@
-//! A placement that is kept across calls: the same seed and domain without finding its place again.
+//! A placement that is kept across calls, and the two functions that use one or make their own.
+
+use std::sync::Arc;
 
 use pyo3::prelude::*;
-use twelvefold::Constant;
+use twelvefold::{Constant, Domain};
 
-use crate::arrays;
+use crate::arguments::{self, Rectangle};
 use crate::sampling::{self, Wish};
+use crate::{arrays, error, exact};
 
-/// Where in the tiling a domain lies; see the package's documentation.
-#[pyclass(frozen, module = "twelvefold")]
+/// Where in the tiling a domain lies; the package's Python half gives it methods.
+#[pyclass(frozen, module = "twelvefold._native")]
 pub(crate) struct Placement {
-    inner: twelvefold::Placement<'static>,
-    seed: u64,
+    inner: Arc<twelvefold::Placement<'static>>,
 }
 
 #[pymethods]
 impl Placement {
     #[new]
-    #[pyo3(signature = (domain = (0.0, 0.0, 1.0, 1.0), seed = 0))]
-    fn new(domain: (f64, f64, f64, f64), seed: u64) -> PyResult<Self> {
-        let inner = twelvefold::Placement::new(arrays::domain(domain)?, seed);
-        Ok(Self { inner, seed })
-    }
-
-    /// (x, y, width, height).
-    #[getter]
-    fn domain(&self) -> (f64, f64, f64, f64) {
-        let domain = self.inner.domain();
-        (domain.min().x, domain.min().y, domain.size().x, domain.size().y)
-    }
-
-    /// The seed.
-    #[getter]
-    fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Placement(domain={:?}, seed={})", self.domain(), self.seed)
-    }
-
-    /// As the function `sample`, of this placement.
-    #[pyo3(signature = (importance = None, n = None, *, density = None, relaxed = true, dtype = None, weights = false, part = None))]
-    #[allow(clippy::too_many_arguments, reason = "Python's keywords, each by its name")]
-    fn sample<'py>(
-        &self,
-        py: Python<'py>,
-        importance: Option<&Bound<'py, PyAny>>,
-        n: Option<f64>,
-        density: Option<f64>,
-        relaxed: bool,
-        dtype: Option<Bound<'py, PyAny>>,
-        weights: bool,
-        part: Option<(usize, usize)>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let dtype = match dtype {
-            Some(dtype) => dtype,
-            None => "float32".into_pyobject(py)?.into_any(),
+    fn new(domain: Rectangle, seed: &Bound<'_, PyAny>, density: Option<f64>) -> PyResult<Self> {
+        let domain = arguments::domain("domain", domain)?;
+        let seed = arguments::seed(seed)?;
+        let inner = match density {
+            None => twelvefold::Placement::new(domain, seed),
+            Some(density) => twelvefold::Placement::aligned(domain, seed, density)
+                .map_err(|reason| error::value(format!("density is {density}: {reason}")))?,
         };
-        let wish = Wish::new((n, density), relaxed, &dtype, weights, part)?;
-        match importance {
-            None => sampling::receive(py, &self.inner, &Constant::ONE, wish),
-            Some(array) => {
-                let map = arrays::map("importance", array, Some(self.inner.domain()))?;
-                sampling::receive(py, &self.inner, &map, wish)
+        Ok(Self { inner: Arc::new(inner) })
+    }
+}
+
+/// A placement to use, or what one is made of.
+struct Place<'a, 'py> {
+    kept: Option<&'a Bound<'py, Placement>>,
+    domain: Option<Domain>,
+    seed: u64,
+}
+
+impl<'a, 'py> Place<'a, 'py> {
+    fn new(
+        kept: Option<&'a Bound<'py, Placement>>,
+        domain: Option<Rectangle>,
+        seed: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let domain = domain.map(|domain| arguments::domain("domain", domain)).transpose()?;
+        let domain = kept.map(|kept| kept.get().inner.domain()).or(domain);
+        Ok(Self { kept, domain, seed: arguments::seed(seed)? })
+    }
+
+    /// The placement, of this domain if none is given.
+    fn placement(&self, of_importance: Domain) -> Arc<twelvefold::Placement<'static>> {
+        match self.kept {
+            Some(kept) => Arc::clone(&kept.get().inner),
+            None => {
+                let domain = self.domain.unwrap_or(of_importance);
+                Arc::new(twelvefold::Placement::new(domain, self.seed))
             }
+        }
+    }
+}
+
+/// The domain of an image's own pixels.
+fn pixels((width, height, _): &arrays::Image) -> PyResult<Domain> {
+    arguments::domain("the image", (0.0, 0.0, *width as f64, *height as f64))
+}
+
+/// Points on `importance` (an array, or nothing for uniform density); see the package's documentation.
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "Python's keywords, each by its name")]
+pub(crate) fn sample<'py>(
+    py: Python<'py>,
+    kept: Option<&Bound<'py, Placement>>,
+    domain: Option<Rectangle>,
+    seed: &Bound<'py, PyAny>,
+    importance: Option<&Bound<'py, PyAny>>,
+    n: Option<f64>,
+    density: Option<f64>,
+    relaxed: bool,
+    double: bool,
+    weights: bool,
+    ranks: bool,
+    part: Option<(usize, usize)>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let amount = arguments::amount(n, density)?;
+    let wish = Wish { amount, relaxed, double, weights, ranks, part }.check()?;
+    let place = Place::new(kept, domain, seed)?;
+    match importance {
+        None => sampling::receive(py, place.placement(Domain::UNIT), || Ok(Constant::ONE), wish),
+        Some(array) => {
+            let image = arrays::importance("importance", array)?;
+            let placement = place.placement(pixels(&image)?);
+            let domain = placement.domain();
+            sampling::receive(py, placement, move || arrays::map(image, domain), wish)
+        }
+    }
+}
+
+/// Exactly n points in progressive order; see the package's documentation.
+#[pyfunction]
+pub(crate) fn exactly<'py>(
+    py: Python<'py>,
+    kept: Option<&Bound<'py, Placement>>,
+    domain: Option<Rectangle>,
+    seed: &Bound<'py, PyAny>,
+    importance: Option<&Bound<'py, PyAny>>,
+    n: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let n = arguments::count(n)?;
+    let place = Place::new(kept, domain, seed)?;
+    match importance {
+        None => exact::receive(py, place.placement(Domain::UNIT), || Ok(Constant::ONE), n),
+        Some(array) => {
+            let image = arrays::importance("importance", array)?;
+            let placement = place.placement(pixels(&image)?);
+            let domain = placement.domain();
+            exact::receive(py, placement, move || arrays::map(image, domain), n)
         }
     }
 }

@@ -1,227 +1,230 @@
-//! Points of a density: `sample`, and exactly n of them: `exactly`.
+//! Points of a density: all of them by several threads, or a part of them.
 
-use glam::{DVec2, Vec2};
-use numpy::{PyArray1, PyArrayMethods as _};
+use std::sync::Arc;
+
+use numpy::Element;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use twelvefold::estimate::{self, Weighting};
-use twelvefold::{Amount, Constant, Domain, Importance, Limits, Position, Sampling, SamplingError};
+use rayon::prelude::*;
+use twelvefold::estimate::Weighting;
+use twelvefold::{Amount, Importance, Part, Placement, Position, Sampling, SamplingError};
 
-use crate::interrupt::{self, Stop};
-use crate::{arrays, error};
+use crate::work::{self, Stop};
+use crate::{error, output};
 
-/// Points between two looks for an interrupt: some ten milliseconds.
-const BLOCK: f64 = 1_000_000.0;
+/// Points that a thread makes in one go, about a millisecond's: between them it looks whether they are
+/// still wanted.
+const PIECE: f64 = 65_536.0;
 
-/// What is wanted of a call of `sample`.
+/// Pieces that are made before they are put together.
+const PIECES_AT_ONCE: usize = 256;
+
+/// What is wanted of a sampling.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wish {
     pub(crate) amount: Amount,
     pub(crate) relaxed: bool,
+    /// Positions in `f64`.
     pub(crate) double: bool,
     pub(crate) weights: bool,
+    pub(crate) ranks: bool,
     /// Part i of n.
     pub(crate) part: Option<(usize, usize)>,
 }
 
 impl Wish {
-    /// The wish that Python's arguments say.
-    ///
     /// # Errors
-    /// `ValueError` for both amounts or none, an unknown dtype, and weights of relaxed points.
-    pub(crate) fn new(
-        (n, density): (Option<f64>, Option<f64>),
-        relaxed: bool,
-        dtype: &Bound<'_, PyAny>,
-        weights: bool,
-        part: Option<(usize, usize)>,
-    ) -> PyResult<Self> {
-        let amount = match (n, density) {
-            (Some(n), None) => Amount::Points(n),
-            (None, Some(density)) => Amount::Density(density),
-            _ => return Err(error::value("give n or density, and not both")),
-        };
-        let name: String = dtype
-            .py()
-            .import("numpy")?
-            .call_method1("dtype", (dtype,))?
-            .getattr("name")?
-            .extract()?;
-        let double = match name.as_str() {
-            "float32" => false,
-            "float64" => true,
-            _ => {
-                return Err(error::value(format!(
-                    "dtype is {name}; it should be float32 or float64"
-                )));
-            }
-        };
-        if weights && relaxed {
+    /// `ValueError` for wishes that contradict each other, and a part that there is not.
+    pub(crate) fn check(self) -> PyResult<Self> {
+        if self.weights && self.relaxed {
             return Err(error::value(
-                "relaxed points have no unbiased weights: pass relaxed=False",
+                "relaxed points have no unbiased weights: give relaxed=False",
             ));
         }
-        if weights && part.is_some() {
-            return Err(error::value("weights are for the whole set: pass no part"));
+        if self.weights && !self.double {
+            return Err(error::value("weights belong to positions of dtype float64"));
         }
-        Ok(Self { amount, relaxed, double, weights, part })
-    }
-}
-
-/// Points on `importance` (an array, or nothing for uniform density); see the package's documentation.
-#[pyfunction]
-#[pyo3(signature = (importance, n, density, relaxed, domain, seed, dtype, weights, part))]
-#[allow(clippy::too_many_arguments, reason = "Python's keywords, each by its name")]
-pub(crate) fn sample<'py>(
-    py: Python<'py>,
-    importance: Option<&Bound<'py, PyAny>>,
-    n: Option<f64>,
-    density: Option<f64>,
-    relaxed: bool,
-    domain: Option<(f64, f64, f64, f64)>,
-    seed: u64,
-    dtype: &Bound<'py, PyAny>,
-    weights: bool,
-    part: Option<(usize, usize)>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let wish = Wish::new((n, density), relaxed, dtype, weights, part)?;
-    let domain = domain.map(arrays::domain).transpose()?;
-    match importance {
-        None => {
-            let domain = domain.unwrap_or(Domain::unit());
-            let placement = twelvefold::Placement::new(domain, seed);
-            receive(py, &placement, &Constant::ONE, wish)
+        if self.weights && self.part.is_some() {
+            return Err(error::value("weights are of the whole set: give no part"));
         }
-        Some(array) => {
-            let map = arrays::map("importance", array, domain)?;
-            let placement = twelvefold::Placement::new(map.domain(), seed);
-            receive(py, &placement, &map, wish)
+        match self.part {
+            Some((index, of)) if index >= of => {
+                Err(error::sampling(SamplingError::Part { index, of }))
+            }
+            _ => Ok(self),
         }
     }
 }
 
-/// Makes the points of a wish, with Python's lock released.
+/// Points with what is wanted beside them.
+struct Made<P> {
+    points: Vec<P>,
+    weights: Option<Vec<f64>>,
+    ranks: Option<Vec<u64>>,
+}
+
+/// The points of a wish as an array, or as a tuple of arrays if weights or ranks are wished.
 pub(crate) fn receive<'py, I: Importance + Sync>(
     py: Python<'py>,
-    placement: &twelvefold::Placement<'_>,
-    importance: &I,
+    placement: Arc<Placement<'static>>,
+    importance: impl FnOnce() -> PyResult<I> + Send + 'static,
     wish: Wish,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let sampling = Sampling::new(placement, importance, wish.amount).map_err(error::value)?;
-    let sampling = if wish.relaxed { sampling.relaxed().map_err(error::value)? } else { sampling };
-    if wish.weights {
-        let made = interrupt::run(py, |stop| weighted(&sampling, stop))?.map_err(error::value)?;
-        let (points, weights): (Vec<DVec2>, Vec<f64>) = made.into_iter().unzip();
-        let points = if wish.double {
-            pairs64(py, &points)?
-        } else {
-            pairs32(py, points.iter().map(|p| p.as_vec2()))?
-        };
-        let weights = PyArray1::from_vec(py, weights).into_any();
-        return Ok(PyTuple::new(py, [points, weights])?.into_any());
-    }
     if wish.double {
-        let points: Vec<DVec2> = interrupt::run(py, |stop| collect(&sampling, wish.part, stop))??;
-        pairs64(py, &points)
+        arrays(py, make::<I, f64>(py, placement, importance, wish)?)
     } else {
-        let points: Vec<Vec2> = interrupt::run(py, |stop| collect(&sampling, wish.part, stop))??;
-        pairs32(py, points.into_iter())
+        arrays(py, make::<I, f32>(py, placement, importance, wish)?)
     }
 }
 
-/// All points of a sampling, or of one of its parts, in the order of the walk.
-fn collect<I: Importance, P: Position>(
-    sampling: &Sampling<'_, I>,
+fn arrays<S: Element>(py: Python<'_>, made: Made<[S; 2]>) -> PyResult<Bound<'_, PyAny>> {
+    let points = output::rows(py, made.points)?;
+    let weights = made.weights.map(|weights| output::column(py, weights));
+    let ranks = made.ranks.map(|ranks| output::column(py, ranks));
+    if weights.is_none() && ranks.is_none() {
+        return Ok(points);
+    }
+    let all: Vec<_> = [Some(points), weights, ranks].into_iter().flatten().collect();
+    Ok(PyTuple::new(py, all)?.into_any())
+}
+
+/// Makes the points with Python's lock released.
+fn make<I: Importance + Sync, S: Send + 'static>(
+    py: Python<'_>,
+    placement: Arc<Placement<'static>>,
+    importance: impl FnOnce() -> PyResult<I> + Send + 'static,
+    wish: Wish,
+) -> PyResult<Made<[S; 2]>>
+where
+    [S; 2]: Position,
+{
+    work::run(py, move |stop| {
+        let importance = importance()?;
+        let sampling =
+            Sampling::new(&placement, &importance, wish.amount).map_err(error::sampling)?;
+        if wish.weights {
+            return weighted(&sampling, wish.ranks, stop);
+        }
+        let sampling =
+            if wish.relaxed { sampling.relaxed().map_err(error::sampling)? } else { sampling };
+        if wish.ranks {
+            let samples = parts(&sampling, wish.part, stop, |part, _| {
+                let mut samples = Vec::new();
+                for sample in part.points::<[S; 2]>()? {
+                    let sample = sample?;
+                    push(&mut samples, (sample.position, sample.rank))?;
+                }
+                Ok(samples)
+            })?;
+            let (points, ranks) = samples.into_iter().unzip();
+            return Ok(Made { points, weights: None, ranks: Some(ranks) });
+        }
+        let points = parts(&sampling, wish.part, stop, fill)?;
+        Ok(Made { points, weights: None, ranks: None })
+    })
+}
+
+/// What `receive` makes of a part of a sampling, or of all of it in pieces by all threads, one after the
+/// other. A part is the library's own, so that it is the same through every door.
+fn parts<'a, I: Importance + Sync, T: Send>(
+    sampling: &Sampling<'a, I>,
     part: Option<(usize, usize)>,
     stop: &Stop,
-) -> PyResult<Vec<P>> {
-    // Pieces of the part: their points, one piece after the other, are the part's.
-    let expected = sampling.expected_points().unwrap_or(BLOCK);
-    let (index, of) = part.unwrap_or((0, 1));
-    if index >= of {
-        return Err(error::value(SamplingError::Shard { index, of }));
+    receive: impl Fn(&Part<'a, I>, usize) -> Result<Vec<T>, SamplingError> + Sync,
+) -> PyResult<Vec<T>> {
+    let expected = sampling.expected_points().unwrap_or(PIECE);
+    if let Some((index, of)) = part {
+        let division = sampling.divide(of).map_err(error::sampling)?;
+        let part = division.part(index).map_err(error::sampling)?;
+        return receive(&part, room(expected / of as f64)).map_err(error::sampling);
     }
-    let pieces = (expected / of as f64 / BLOCK).ceil().clamp(1.0, 65_536.0) as usize;
-    let mut points: Vec<P> = Vec::new();
-    for piece in index * pieces..(index + 1) * pieces {
+    let pieces = (expected / PIECE).ceil().clamp(1.0, 65_536.0) as usize;
+    let division = sampling.divide(pieces).map_err(error::sampling)?;
+    let mut all: Vec<T> = Vec::new();
+    for first in (0..pieces).step_by(PIECES_AT_ONCE) {
+        let made: Vec<Vec<T>> = (first..pieces.min(first + PIECES_AT_ONCE))
+            .into_par_iter()
+            .map(|piece| {
+                if stop.wanted() {
+                    return Ok(Vec::new());
+                }
+                receive(&division.part(piece)?, room(expected / pieces as f64))
+            })
+            .collect::<Result<_, _>>()
+            .map_err(error::sampling)?;
         if stop.wanted() {
             break;
         }
-        let sampling = sampling.shard(piece, of * pieces).map_err(error::value)?;
-        let mut room = (1.1 * expected / (of * pieces) as f64) as usize + 64;
-        let start = points.len();
-        loop {
-            points.try_reserve(room).map_err(|_| error::memory(room * size_of::<P>()))?;
-            points.resize(start + room, P::default());
-            let filled = sampling.fill(&mut points[start..]).map_err(error::value)?;
-            points.truncate(start + filled.written);
-            if filled.complete {
-                break;
-            }
-            room *= 2;
+        if pieces == 1 {
+            return Ok(made.into_iter().next().unwrap_or_default());
         }
+        let more = made.iter().map(Vec::len).sum::<usize>();
+        // At once for all that is still to come.
+        let more = more.max(room(expected - all.len() as f64));
+        let bytes = more.saturating_mul(size_of::<T>());
+        all.try_reserve(more).map_err(|_| error::memory(bytes))?;
+        made.into_iter().for_each(|piece| all.extend(piece));
     }
-    Ok(points)
+    Ok(all)
+}
+
+/// Room that is nearly always enough for so many points.
+fn room(expected: f64) -> usize {
+    let expected = expected.max(0.0);
+    (expected + 3.0 * expected.sqrt()) as usize + 64
+}
+
+/// The points of a part of some `room` points.
+fn fill<I: Importance, P: Position>(
+    part: &Part<'_, I>,
+    mut room: usize,
+) -> Result<Vec<P>, SamplingError> {
+    let mut points: Vec<P> = Vec::new();
+    loop {
+        points.clear();
+        let bytes = room.saturating_mul(size_of::<P>());
+        points.try_reserve_exact(room).map_err(|_| SamplingError::Memory { bytes })?;
+        points.resize(room, P::default());
+        let filled = part.fill(&mut points)?;
+        if filled.complete {
+            points.truncate(filled.written);
+            return Ok(points);
+        }
+        room = room.saturating_mul(2);
+    }
 }
 
 /// All points with their weights.
-fn weighted<I: Importance>(
+fn weighted<I: Importance, S>(
     sampling: &Sampling<'_, I>,
+    ranks: bool,
     stop: &Stop,
-) -> Result<Vec<(DVec2, f64)>, SamplingError> {
+) -> PyResult<Made<[S; 2]>>
+where
+    [S; 2]: Position,
+{
+    use twelvefold::Scalar as _;
     let mut made = Vec::new();
-    for point in sampling.weighted(Weighting::Density)? {
-        if made.len() % 65_536 == 0 && stop.wanted() {
+    for (i, point) in sampling.weighted(Weighting::Density).map_err(error::sampling)?.enumerate() {
+        if i % 65_536 == 0 && stop.wanted() {
             break;
         }
-        let point = point?;
-        made.push((point.position, point.weight));
+        push(&mut made, point.map_err(error::sampling)?).map_err(error::sampling)?;
     }
-    Ok(made)
-}
-
-/// Exactly n points in progressive order; see the package's documentation.
-#[pyfunction]
-#[pyo3(signature = (importance, n, domain, seed))]
-pub(crate) fn exactly<'py>(
-    py: Python<'py>,
-    importance: Option<&Bound<'py, PyAny>>,
-    n: usize,
-    domain: Option<(f64, f64, f64, f64)>,
-    seed: u64,
-) -> PyResult<Bound<'py, PyAny>> {
-    let domain = domain.map(arrays::domain).transpose()?;
-    let limits = Limits::default();
-    let made = match importance {
-        None => {
-            let placement = twelvefold::Placement::new(domain.unwrap_or(Domain::unit()), seed);
-            py.detach(|| estimate::exactly(&placement, &Constant::ONE, n, limits))
-        }
-        Some(array) => {
-            let map = arrays::map("importance", array, domain)?;
-            let placement = twelvefold::Placement::new(map.domain(), seed);
-            py.detach(|| estimate::exactly(&placement, &map, n, limits))
-        }
+    let position = |at: [f64; 2]| {
+        let [x, y] = at.map(<[S; 2] as Position>::Scalar::from_f64);
+        <[S; 2] as Position>::from_xy(x, y)
     };
-    let made = made.map_err(error::value)?;
-    let points: Vec<DVec2> = made.iter().map(|point| point.position).collect();
-    let weights: Vec<f64> = made.iter().map(|point| point.weight).collect();
-    let weights = PyArray1::from_vec(py, weights).into_any();
-    Ok(PyTuple::new(py, [pairs64(py, &points)?, weights])?.into_any())
+    Ok(Made {
+        points: made.iter().map(|point| position(point.position.to_array())).collect(),
+        weights: Some(made.iter().map(|point| point.weight).collect()),
+        ranks: ranks.then(|| made.iter().map(|point| point.rank).collect()),
+    })
 }
 
-/// Positions as an array [points, 2] of `float64`.
-pub(crate) fn pairs64<'py>(py: Python<'py>, points: &[DVec2]) -> PyResult<Bound<'py, PyAny>> {
-    let flat: Vec<f64> = points.iter().flat_map(|p| [p.x, p.y]).collect();
-    Ok(PyArray1::from_vec(py, flat).reshape([points.len(), 2])?.into_any())
-}
-
-/// Positions as an array [points, 2] of `float32`.
-pub(crate) fn pairs32<'py>(
-    py: Python<'py>,
-    points: impl ExactSizeIterator<Item = Vec2>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let count = points.len();
-    let flat: Vec<f32> = points.flat_map(|p| [p.x, p.y]).collect();
-    Ok(PyArray1::from_vec(py, flat).reshape([count, 2])?.into_any())
+fn push<T>(items: &mut Vec<T>, item: T) -> Result<(), SamplingError> {
+    let bytes = (items.len() + 1).saturating_mul(size_of::<T>());
+    items.try_reserve(1).map_err(|_| SamplingError::Memory { bytes })?;
+    items.push(item);
+    Ok(())
 }
