@@ -6,15 +6,46 @@ use twelvefold::{Amount, Domain};
 
 use crate::error;
 
-/// Where a point is, or how large: (x, y, width, height).
+/// The items of a sequence of this length: a tuple, a list, an array.
+fn items<'py, const N: usize>(
+    name: &str,
+    wanted: &str,
+    sequence: &Bound<'py, PyAny>,
+) -> PyResult<[Bound<'py, PyAny>; N]> {
+    let bad = || error::kind(format!("{name} should be {wanted}"));
+    let items: Vec<_> =
+        sequence.try_iter().map_err(|_| bad())?.take(N + 1).collect::<PyResult<_>>()?;
+    items.try_into().map_err(|_| bad())
+}
+
+/// (x, y, width, height).
 pub(crate) type Rectangle = (f64, f64, f64, f64);
 
+pub(crate) fn rectangle(name: &str, sequence: &Bound<'_, PyAny>) -> PyResult<Rectangle> {
+    let wanted = "four numbers (x, y, width, height)";
+    let items = items::<4>(name, wanted, sequence)?;
+    let number = |item: &Bound<'_, PyAny>| {
+        item.extract::<f64>().map_err(|_| error::kind(format!("{name} should be {wanted}")))
+    };
+    Ok((number(&items[0])?, number(&items[1])?, number(&items[2])?, number(&items[3])?))
+}
+
 /// A rectangle as a domain.
-pub(crate) fn domain(name: &str, rectangle: Rectangle) -> PyResult<Domain> {
+pub(crate) fn domain(name: &str, sequence: &Bound<'_, PyAny>) -> PyResult<Domain> {
+    let rectangle = rectangle(name, sequence)?;
     let (x, y, width, height) = rectangle;
     Domain::new(DVec2::new(x, y), DVec2::new(width, height))
         .map_err(|reason| error::value(format!("{name} is {rectangle:?}: {reason}")))
 }
+
+/// Part i of how many.
+pub(crate) fn part(sequence: &Bound<'_, PyAny>) -> PyResult<(usize, usize)> {
+    let [index, of] = items("part", "two whole numbers (i, count)", sequence)?;
+    Ok((whole("part[0]", &index, MOST_PARTS)?, whole("part[1]", &of, MOST_PARTS)?))
+}
+
+/// More would have no point each of the most that there can be.
+const MOST_PARTS: usize = 1 << 32;
 
 /// A whole number from 0 up.
 pub(crate) fn whole<T>(name: &str, number: &Bound<'_, PyAny>, most: T) -> PyResult<T>

@@ -29,8 +29,10 @@ impl<'a, 'py> Numbers<'a, 'py> {
             )));
         }
         let numpy = argument.py().import("numpy")?;
-        // Aligned, which nearly every array is already.
-        let array = numpy.call_method1("require", (argument, argument.py().None(), "A"))?;
+        let array = numpy.call_method1("asarray", (argument,))?;
+        // Aligned and in this machine's byte order, which nearly every array is already.
+        let native = array.getattr("dtype")?.call_method1("newbyteorder", ("=",))?;
+        let array = numpy.call_method1("require", (array, native, "A"))?;
         let array = array
             .cast_into::<PyUntypedArray>()
             .map_err(|_| error::kind(format!("{name} is no array of numbers")))?;
@@ -101,8 +103,11 @@ pub(crate) fn copied<S: numpy::Element + Copy, T>(
     let bytes = array.len().saturating_mul(size_of::<T>());
     copy.try_reserve_exact(array.len()).map_err(|_| error::memory(bytes))?;
     match array.as_slice() {
-        Ok(numbers) => copy.extend(numbers.iter().map(|number| convert(*number))),
-        Err(_) => copy.extend(array.as_array().iter().map(|number| convert(*number))),
+        // A slice of an array stored column by column would be in that order.
+        Ok(numbers) if array.is_c_contiguous() => {
+            copy.extend(numbers.iter().map(|number| convert(*number)));
+        }
+        _ => copy.extend(array.as_array().iter().map(|number| convert(*number))),
     }
     Ok(copy)
 }

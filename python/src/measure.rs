@@ -7,9 +7,8 @@ use twelvefold_lab::measure::discrepancy;
 use twelvefold_lab::measure::nearest::{self, Summary};
 use twelvefold_lab::measure::{MeasureError, Window, fidelity, hexagonal_distance, spectrum};
 
-use crate::arguments::Rectangle;
 use crate::arrays::{self, Image};
-use crate::{error, work};
+use crate::{arguments, error, work};
 
 /// The most points of which the low-frequency power, O(n²), is computed: some seconds.
 const SPECTRUM_LIMIT: usize = 65_536;
@@ -21,14 +20,14 @@ type Table = Vec<(&'static str, f64)>;
 pub(crate) fn measure<'py>(
     py: Python<'py>,
     points: &Bound<'py, PyAny>,
-    window: Option<Rectangle>,
+    window: Option<&Bound<'py, PyAny>>,
     importance: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let points = arrays::points("points", points)?;
     let image =
         importance.map(|importance| arrays::importance("importance", importance)).transpose()?;
     let (x, y, width, height) = match (window, &image) {
-        (Some(window), _) => window,
+        (Some(window), _) => arguments::rectangle("window", window)?,
         (None, Some((width, height, _))) => (0.0, 0.0, *width as f64, *height as f64),
         (None, None) => (0.0, 0.0, 1.0, 1.0),
     };

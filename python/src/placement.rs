@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use pyo3::prelude::*;
 use twelvefold::{Constant, Domain};
 
-use crate::arguments::{self, Rectangle};
 use crate::sampling::{self, Wish};
-use crate::{arrays, error, exact};
+use crate::{arguments, arrays, error, exact};
 
 /// Where in the tiling a domain lies; the package's Python half gives it methods.
 #[pyclass(frozen, module = "twelvefold._native")]
@@ -18,7 +18,11 @@ pub(crate) struct Placement {
 #[pymethods]
 impl Placement {
     #[new]
-    fn new(domain: Rectangle, seed: &Bound<'_, PyAny>, density: Option<f64>) -> PyResult<Self> {
+    fn new(
+        domain: &Bound<'_, PyAny>,
+        seed: &Bound<'_, PyAny>,
+        density: Option<f64>,
+    ) -> PyResult<Self> {
         let domain = arguments::domain("domain", domain)?;
         let seed = arguments::seed(seed)?;
         let inner = match density {
@@ -27,6 +31,12 @@ impl Placement {
                 .map_err(|reason| error::value(format!("density is {density}: {reason}")))?,
         };
         Ok(Self { inner: Arc::new(inner) })
+    }
+
+    #[getter]
+    fn domain(&self) -> (f64, f64, f64, f64) {
+        let domain = self.inner.domain();
+        (domain.min().x, domain.min().y, domain.size().x, domain.size().y)
     }
 }
 
@@ -40,7 +50,7 @@ struct Place<'a, 'py> {
 impl<'a, 'py> Place<'a, 'py> {
     fn new(
         kept: Option<&'a Bound<'py, Placement>>,
-        domain: Option<Rectangle>,
+        domain: Option<&Bound<'_, PyAny>>,
         seed: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let domain = domain.map(|domain| arguments::domain("domain", domain)).transpose()?;
@@ -62,7 +72,7 @@ impl<'a, 'py> Place<'a, 'py> {
 
 /// The domain of an image's own pixels.
 fn pixels((width, height, _): &arrays::Image) -> PyResult<Domain> {
-    arguments::domain("the image", (0.0, 0.0, *width as f64, *height as f64))
+    Domain::new(DVec2::ZERO, DVec2::new(*width as f64, *height as f64)).map_err(error::value)
 }
 
 /// Points on `importance` (an array, or nothing for uniform density); see the package's documentation.
@@ -71,7 +81,7 @@ fn pixels((width, height, _): &arrays::Image) -> PyResult<Domain> {
 pub(crate) fn sample<'py>(
     py: Python<'py>,
     kept: Option<&Bound<'py, Placement>>,
-    domain: Option<Rectangle>,
+    domain: Option<&Bound<'py, PyAny>>,
     seed: &Bound<'py, PyAny>,
     importance: Option<&Bound<'py, PyAny>>,
     n: Option<f64>,
@@ -80,9 +90,10 @@ pub(crate) fn sample<'py>(
     double: bool,
     weights: bool,
     ranks: bool,
-    part: Option<(usize, usize)>,
+    part: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let amount = arguments::amount(n, density)?;
+    let part = part.map(arguments::part).transpose()?;
     let wish = Wish { amount, relaxed, double, weights, ranks, part }.check()?;
     let place = Place::new(kept, domain, seed)?;
     match importance {
@@ -101,7 +112,7 @@ pub(crate) fn sample<'py>(
 pub(crate) fn exactly<'py>(
     py: Python<'py>,
     kept: Option<&Bound<'py, Placement>>,
-    domain: Option<Rectangle>,
+    domain: Option<&Bound<'py, PyAny>>,
     seed: &Bound<'py, PyAny>,
     importance: Option<&Bound<'py, PyAny>>,
     n: &Bound<'py, PyAny>,

@@ -197,7 +197,7 @@ class Placement:
 
     def __init__(self, domain=(0.0, 0.0, 1.0, 1.0), seed=0, *, density=None):
         self._native = _native.Placement(domain, seed, density)
-        self._arguments = (tuple(map(float, domain)), int(seed), density)
+        self._arguments = (self._native.domain, int(seed), density)
 
     @property
     def domain(self):
