@@ -1,7 +1,7 @@
 //! The Python door to twelvefold: arrays in, arrays out, and nothing of the sampling itself.
 //!
-//! [`arguments`], [`arrays`] and [`tone`] read what Python hands in; [`work`] runs the library without
-//! Python's lock and listens for Ctrl-C; [`output`] hands arrays back. One file for each function between.
+//! `arguments`, `arrays` and `tone` read what Python hands in; `work` runs the library without
+//! Python's lock and listens for Ctrl-C; `output` hands arrays back. One file for each function between.
 
 mod arguments;
 mod arrays;
