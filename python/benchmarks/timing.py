@@ -16,7 +16,7 @@ from poisson_disc import Bridson_sampling
 from scipy.stats import qmc
 
 #: Points of a maximal Poisson-disk set in a unit square, times the squared radius.
-PACKED = 0.70
+PACKED = 0.82
 
 
 def rounds(contenders, seconds):

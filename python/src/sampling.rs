@@ -7,7 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use rayon::prelude::*;
 use twelvefold::estimate::Weighting;
-use twelvefold::{Amount, Importance, Part, Placement, Position, Sampling, SamplingError};
+use twelvefold::{
+    Amount, Filled, Importance, Part, Placement, Points, Position, Sampling, SamplingError,
+};
 
 use crate::work::{self, Stop};
 use crate::{error, output};
@@ -108,9 +110,9 @@ where
         let sampling =
             if wish.relaxed { sampling.relaxed().map_err(error::sampling)? } else { sampling };
         if wish.ranks {
-            let samples = parts(&sampling, wish.part, stop, |part, _| {
+            let samples = parts(&sampling, wish.part, stop, |source, _| {
                 let mut samples = Vec::new();
-                for sample in part.points::<[S; 2]>()? {
+                for sample in source.points::<[S; 2]>()? {
                     let sample = sample?;
                     push(&mut samples, (sample.position, sample.rank))?;
                 }
@@ -124,21 +126,46 @@ where
     })
 }
 
+/// A sampling, or a part of one.
+enum Source<'a, I> {
+    Whole(Sampling<'a, I>),
+    Part(Part<'a, I>),
+}
+
+impl<'a, I: Importance> Source<'a, I> {
+    fn fill<P: Position>(&self, buffer: &mut [P]) -> Result<Filled, SamplingError> {
+        match self {
+            Self::Whole(sampling) => sampling.fill(buffer),
+            Self::Part(part) => part.fill(buffer),
+        }
+    }
+
+    fn points<P: Position>(&self) -> Result<Points<'a, I, P>, SamplingError> {
+        match self {
+            Self::Whole(sampling) => sampling.points(),
+            Self::Part(part) => part.points(),
+        }
+    }
+}
+
 /// What `receive` makes of a part of a sampling, or of all of it in pieces by all threads, one after the
 /// other. A part is the library's own, so that it is the same through every door.
 fn parts<'a, I: Importance + Sync, T: Send>(
     sampling: &Sampling<'a, I>,
     part: Option<(usize, usize)>,
     stop: &Stop,
-    receive: impl Fn(&Part<'a, I>, usize) -> Result<Vec<T>, SamplingError> + Sync,
+    receive: impl Fn(&Source<'a, I>, usize) -> Result<Vec<T>, SamplingError> + Sync,
 ) -> PyResult<Vec<T>> {
     let expected = sampling.expected_points().unwrap_or(PIECE);
     if let Some((index, of)) = part {
         let division = sampling.divide(of).map_err(error::sampling)?;
-        let part = division.part(index).map_err(error::sampling)?;
+        let part = Source::Part(division.part(index).map_err(error::sampling)?);
         return receive(&part, room(expected / of as f64)).map_err(error::sampling);
     }
     let pieces = (expected / PIECE).ceil().clamp(1.0, 65_536.0) as usize;
+    if pieces == 1 {
+        return receive(&Source::Whole(*sampling), room(expected)).map_err(error::sampling);
+    }
     let division = sampling.divide(pieces).map_err(error::sampling)?;
     let mut all: Vec<T> = Vec::new();
     for first in (0..pieces).step_by(PIECES_AT_ONCE) {
@@ -148,15 +175,12 @@ fn parts<'a, I: Importance + Sync, T: Send>(
                 if stop.wanted() {
                     return Ok(Vec::new());
                 }
-                receive(&division.part(piece)?, room(expected / pieces as f64))
+                receive(&Source::Part(division.part(piece)?), room(expected / pieces as f64))
             })
             .collect::<Result<_, _>>()
             .map_err(error::sampling)?;
         if stop.wanted() {
             break;
-        }
-        if pieces == 1 {
-            return Ok(made.into_iter().next().unwrap_or_default());
         }
         let more = made.iter().map(Vec::len).sum::<usize>();
         // At once for all that is still to come.
@@ -174,9 +198,9 @@ fn room(expected: f64) -> usize {
     (expected + 3.0 * expected.sqrt()) as usize + 64
 }
 
-/// The points of a part of some `room` points.
+/// The points of a source of some `room` points.
 fn fill<I: Importance, P: Position>(
-    part: &Part<'_, I>,
+    source: &Source<'_, I>,
     mut room: usize,
 ) -> Result<Vec<P>, SamplingError> {
     let mut points: Vec<P> = Vec::new();
@@ -185,7 +209,7 @@ fn fill<I: Importance, P: Position>(
         let bytes = room.saturating_mul(size_of::<P>());
         points.try_reserve_exact(room).map_err(|_| SamplingError::Memory { bytes })?;
         points.resize(room, P::default());
-        let filled = part.fill(&mut points)?;
+        let filled = source.fill(&mut points)?;
         if filled.complete {
             points.truncate(filled.written);
             return Ok(points);
