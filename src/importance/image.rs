@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use glam::DVec2;
 
 use super::pixels::{InvalidPixels, MapError, PixelView};
-use super::raster::{Extremes, Lattice, Texels};
-use super::{Importance, pixels};
+use super::raster::{Extremes, Lattice, RUN, Texels};
+use super::{Importance, pixels, retreat};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 use crate::simd::Simd;
@@ -223,8 +223,19 @@ impl Importance for ImageMap {
     }
 
     #[inline(always)]
-    fn unconstrained(&self, x: &[f64], y: &[f64], _needed: &[f64], unconstrained: &mut [u8]) {
-        self.lattice.are_above(&self.pixels, x, y, unconstrained);
+    fn constrain(&self, centers: [&[f64]; 2], _needed: &[f64], [x, y]: [&mut [f64]; 2]) {
+        let [center_x, center_y] = centers;
+        let runs = x.chunks_mut(RUN).zip(y.chunks_mut(RUN));
+        let centers = center_x.chunks(RUN).zip(center_y.chunks(RUN));
+        for ((x, y), (center_x, center_y)) in runs.zip(centers) {
+            let mut above = [0; RUN];
+            self.lattice.are_above(&self.pixels, x, y, &mut above[..x.len()]);
+            for i in (0..x.len()).filter(|i| above[*i] == 0) {
+                let (center, moved) =
+                    (DVec2::new(center_x[i], center_y[i]), DVec2::new(x[i], y[i]));
+                [x[i], y[i]] = retreat(center, moved, |at| self.value(at) > 0.0).to_array();
+            }
+        }
     }
 
     fn integral(&self, domain: &Domain) -> Option<f64> {
@@ -240,7 +251,7 @@ impl ImageMap {
     #[inline]
     fn under(&self, region: &Disc) -> (Texels<'_>, [u32; 2], [u32; 2]) {
         let (mut low, mut high) = ([[0; 2]], [[0; 2]]);
-        let Disc { centre: DVec2 { x, y }, radius } = *region;
+        let Disc { center: DVec2 { x, y }, radius } = *region;
         let shift = self.lattice.spans(DVec2::ZERO, &[x], &[y], radius, &mut low, &mut high);
         (self.extremes.level(&self.pixels, self.lattice.width, shift), low[0], high[0])
     }

@@ -70,7 +70,7 @@ pub trait Importance {
     #[inline]
     fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
         for ((bound, x), y) in bounds.iter_mut().zip(x).zip(y) {
-            *bound = self.upper_bound(&Disc { centre: origin + DVec2::new(*x, *y), radius });
+            *bound = self.upper_bound(&Disc { center: origin + DVec2::new(*x, *y), radius });
         }
     }
 
@@ -80,57 +80,31 @@ pub trait Importance {
         None
     }
 
-    /// Relaxed points only: the importance that the density phase is read from: averaged at the scale
-    /// of the points' spacing around a place where it is `value`. The same if it is smooth.
-    #[inline]
-    fn local(&self, at: DVec2, value: f64) -> f64 {
-        let _ = at;
-        value
-    }
-
-    /// Relaxed points only: how much the importance varies at the scale of the spacing, from 0, smooth,
-    /// to 1.
-    fn detail(&self, at: DVec2) -> f64 {
-        let _ = at;
-        0.0
-    }
-
-    /// [`local`](Self::local) and [`detail`](Self::detail) at each point `(x[i], y[i])`, all of one length;
-    /// `local` holds the importance at each when it is called. Worth overriding where many at once are
-    /// cheaper; the numbers must be the same.
+    /// Relaxed points only: what surrounds each point `(x[i], y[i])`, all of one length. `local` holds the
+    /// importance at each when it is called, and is left with the importance that the density phase is
+    /// read from: averaged at the scale of the points' spacing, the same if it is smooth. `detail`, 0
+    /// before, is left with how much the importance varies at that scale, from 0, smooth, to 1.
     #[inline]
     fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
-        for (((x, y), local), detail) in x.iter().zip(y).zip(local).zip(detail) {
-            let at = DVec2::new(*x, *y);
-            (*local, *detail) = (self.local(at, *local), self.detail(at));
-        }
+        let _ = (x, y, local, detail);
     }
 
-    /// Relaxed points only: where a point ends up. Its tile's centre is `centre`, its rank is accepted
-    /// where the importance is above `needed`, and relaxation would move it to `moved`; both are places
-    /// of the domain. Never where the
-    /// importance is 0: by default, back towards the centre until it is not. Importance with hard edges
-    /// keeps points on their side. Not farther from `moved` than
-    /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `centre`.
-    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        let _ = needed;
-        retreat(centre, moved, |at| self.value(at) > 0.0)
-    }
-
-    /// Which moved points may stay: 1 for each place `(x[i], y[i])` at which
-    /// [`constrain`](Self::constrain) is sure to leave a point of importance `needed[i]`, and 0 for each
-    /// about which it has to be asked. Worth overriding where many at once
-    /// are cheaper.
+    /// Relaxed points only: where points end up, columns of one length. Each comes from its tile's center
+    /// `centers`, is accepted where the importance is above `needed`, and would be moved to `moved`; both are
+    /// places of the domain. `moved` is left with where it goes: never where the importance is 0; by default,
+    /// back towards the center until it is not. Importance with hard edges keeps points on their side.
+    /// Not farther from where it was to go than [`longest_constraint`](Self::longest_constraint), unless
+    /// on the way from the center. The result for a point depends on that point alone.
     #[inline]
-    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
+    fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
         let _ = needed;
-        for ((x, y), unconstrained) in x.iter().zip(y).zip(unconstrained) {
-            *unconstrained = u8::from(self.value(DVec2::new(*x, *y)) > 0.0);
-        }
+        constrain_each(centers, moved, |center, moved, _| {
+            retreat(center, moved, |at| self.value(at) > 0.0)
+        });
     }
 
     /// The farthest that [`constrain`](Self::constrain) takes a point away from where relaxation moved it, in
-    /// units, other than towards its centre. 0: it is asked only where
+    /// units, other than towards its center. 0: it is asked only where
     /// [`lower_bound`](Self::lower_bound) is 0.
     fn longest_constraint(&self) -> f64 {
         0.0
@@ -143,25 +117,38 @@ pub trait Importance {
     }
 
     /// Whether `value` equals `upper_bound(region)` everywhere in the region, so that points need no
-    /// test of their own. Where it does, [`local`](Self::local) equals it too, there is no
-    /// [`detail`](Self::detail), and nothing [constrains](Self::constrain).
+    /// test of their own. Where it does, the [surroundings](Self::surroundings) are the same, without
+    /// detail, and nothing [constrains](Self::constrain).
     fn is_constant(&self, region: &Disc) -> bool {
         let _ = region;
         false
     }
 }
 
-/// Parts of the way from its centre that a point goes that may not go all of it.
+/// Parts of the way from its center that a point goes that may not go all of it.
 const WAYS: [f64; 3] = [0.75, 0.5, 0.25];
 
-/// The farthest of some places on the way from `centre` to `moved` where a point may lie; the centre if
+/// The farthest of some places on the way from `center` to `moved` where a point may lie; the center if
 /// there is no other.
-fn retreat(centre: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
+fn retreat(center: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
     if may_lie(moved) {
         return moved;
     }
-    let places = WAYS.iter().map(|way| centre + (moved - centre) * *way);
-    places.into_iter().find(|at| may_lie(*at)).unwrap_or(centre)
+    let places = WAYS.iter().map(|way| center + (moved - center) * *way);
+    places.into_iter().find(|at| may_lie(*at)).unwrap_or(center)
+}
+
+/// Each moved point replaced by what becomes of it: of its center, of itself, of its number.
+#[inline(always)]
+fn constrain_each(
+    [center_x, center_y]: [&[f64]; 2],
+    [x, y]: [&mut [f64]; 2],
+    settled: impl Fn(DVec2, DVec2, usize) -> DVec2,
+) {
+    let centers = center_x.iter().zip(center_y);
+    for (i, ((x, y), (center_x, center_y))) in x.iter_mut().zip(y).zip(centers).enumerate() {
+        [*x, *y] = settled(DVec2::new(*center_x, *center_y), DVec2::new(*x, *y), i).to_array();
+    }
 }
 
 /// What a reference does: everything that it refers to.
@@ -195,29 +182,14 @@ macro_rules! forward {
             (**self).integral(domain)
         }
 
-        #[inline]
-        fn local(&self, at: DVec2, value: f64) -> f64 {
-            (**self).local(at, value)
-        }
-
-        #[inline]
-        fn detail(&self, at: DVec2) -> f64 {
-            (**self).detail(at)
-        }
-
         #[inline(always)]
         fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
             (**self).surroundings(x, y, local, detail);
         }
 
-        #[inline]
-        fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-            (**self).constrain(centre, moved, needed)
-        }
-
         #[inline(always)]
-        fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
-            (**self).unconstrained(x, y, needed, unconstrained);
+        fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
+            (**self).constrain(centers, needed, moved);
         }
 
         #[inline]

@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::planes::{Planes, Scales};
 use super::raster::{Grid, RUN, SAME_SIDE};
-use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError, retreat};
+use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError, constrain_each, retreat};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
@@ -117,6 +117,11 @@ impl StippleMap {
         self.grid().value(&self.phase, at)
     }
 
+    /// How much the importance varies at that scale, from 0 to 1.
+    fn detail_at(&self, at: DVec2) -> f64 {
+        self.grid().value(&self.detail, at) * FULL_DETAIL
+    }
+
     /// The pixel under a point, the nearest one beyond the image: column and row.
     #[inline(always)]
     fn pixel(&self, at: DVec2) -> [usize; 2] {
@@ -142,6 +147,40 @@ impl StippleMap {
         let inside = at.clamp(low + PIXEL_BORDER, low + (1.0 - PIXEL_BORDER));
         // What lies beyond the image does not come in by this.
         if (inside - at).abs().max_element() < 1.0 - PIXEL_BORDER { inside } else { at }
+    }
+
+    /// Where a point that is not accepted at `moved` goes: nowhere if that is on its own side of an edge,
+    /// else up the slope of the acceptance around it, else towards its center.
+    fn back_across_the_edge(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        let tone = self.accepted_at(center);
+        let may_lie = |p: DVec2| {
+            let there = self.accepted_at(p);
+            needed < there || (there > 0.0 && there >= SAME_SIDE * tone)
+        };
+        if may_lie(moved) {
+            return moved;
+        }
+        let step = moved - center;
+        let length = libm::sqrt(step.x * step.x + step.y * step.y).min(self.scales.largest);
+        let reach = (0.5 * self.scales.spacing(tone)).max(0.75);
+        let mut inward = DVec2::ZERO;
+        for direction in DIRECTIONS {
+            inward += direction * self.accepted_at(moved + direction * reach);
+        }
+        let steepness = libm::sqrt(inward.x * inward.x + inward.y * inward.y);
+        if steepness > 0.0 {
+            let step = inward * (length / (f64::from(RETREATS) * steepness));
+            for i in 1..=RETREATS {
+                let p = moved + step * f64::from(i);
+                if may_lie(p) {
+                    return self.within_pixel(p);
+                }
+            }
+        }
+        match retreat(center, moved, may_lie) {
+            p if p == center => p,
+            p => self.within_pixel(p),
+        }
     }
 }
 
@@ -179,14 +218,6 @@ impl Importance for StippleMap {
         self.acceptance.integral(domain)
     }
 
-    fn local(&self, at: DVec2, _value: f64) -> f64 {
-        self.phase_at(at)
-    }
-
-    fn detail(&self, at: DVec2) -> f64 {
-        self.grid().value(&self.detail, at) * FULL_DETAIL
-    }
-
     #[inline(always)]
     fn surroundings(&self, x: &[f64], y: &[f64], local: &mut [f64], detail: &mut [f64]) {
         let grid = self.grid();
@@ -203,7 +234,7 @@ impl Importance for StippleMap {
                 None => {
                     for ((local, detail), at) in local.iter_mut().zip(detail).zip(points) {
                         let at = DVec2::from(at);
-                        (*local, *detail) = (self.phase_at(at), self.detail(at));
+                        (*local, *detail) = (self.phase_at(at), self.detail_at(at));
                     }
                 }
             }
@@ -211,45 +242,14 @@ impl Importance for StippleMap {
     }
 
     #[inline(always)]
-    fn unconstrained(&self, x: &[f64], y: &[f64], needed: &[f64], unconstrained: &mut [u8]) {
-        for (((x, y), needed), unconstrained) in x.iter().zip(y).zip(needed).zip(unconstrained) {
-            *unconstrained = u8::from(*needed < self.accepted_at(DVec2::new(*x, *y)));
-        }
-    }
-
-    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        if needed < self.accepted_at(moved) {
-            return moved;
-        }
-        let tone = self.accepted_at(centre);
-        let may_lie = |p: DVec2| {
-            let there = self.accepted_at(p);
-            needed < there || (there > 0.0 && there >= SAME_SIDE * tone)
-        };
-        if may_lie(moved) {
-            return moved;
-        }
-        let step = moved - centre;
-        let length = libm::sqrt(step.x * step.x + step.y * step.y).min(self.scales.largest);
-        let reach = (0.5 * self.scales.spacing(tone)).max(0.75);
-        let mut inward = DVec2::ZERO;
-        for direction in DIRECTIONS {
-            inward += direction * self.accepted_at(moved + direction * reach);
-        }
-        let steepness = libm::sqrt(inward.x * inward.x + inward.y * inward.y);
-        if steepness > 0.0 {
-            let step = inward * (length / (f64::from(RETREATS) * steepness));
-            for i in 1..=RETREATS {
-                let p = moved + step * f64::from(i);
-                if may_lie(p) {
-                    return self.within_pixel(p);
-                }
+    fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
+        constrain_each(centers, moved, |center, moved, i| {
+            if needed[i] < self.accepted_at(moved) {
+                moved
+            } else {
+                self.back_across_the_edge(center, moved, needed[i])
             }
-        }
-        match retreat(centre, moved, may_lie) {
-            p if p == centre => p,
-            p => self.within_pixel(p),
-        }
+        });
     }
 
     fn longest_constraint(&self) -> f64 {
@@ -263,6 +263,13 @@ mod tests {
     use super::*;
     use crate::random::SplitMix64;
 
+    fn constrained(map: &StippleMap, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        let ([mut x], [mut y]) = ([moved.x], [moved.y]);
+        let to = [core::slice::from_mut(&mut x), core::slice::from_mut(&mut y)];
+        map.constrain([&[center.x], &[center.y]], &[needed], to);
+        DVec2::new(x, y)
+    }
+
     #[test]
     fn many_at_once_are_the_single_ones() {
         let mut random = SplitMix64::new(5);
@@ -275,18 +282,22 @@ mod tests {
         };
         let (x, y, needed) = (coordinate(40.0), coordinate(30.0), coordinate(1.0));
         let (mut values, mut local) = ([0.0; 200], [0.5; 200]);
-        let (mut detail, mut unconstrained) = ([0.0; 200], [9; 200]);
+        let mut detail = [0.0; 200];
+        let (mut to_x, mut to_y) = (x.clone(), y.clone());
+        let centers = [&[20.0; 200][..], &[15.0; 200]];
         map.values(DVec2::ZERO, &x, &y, &mut values);
         map.surroundings(&x, &y, &mut local, &mut detail);
-        map.unconstrained(&x, &y, &needed, &mut unconstrained);
+        map.constrain(centers, &needed, [&mut to_x, &mut to_y]);
         let mut moved = 0;
         for i in 0..200 {
             let at = DVec2::new(x[i], y[i]);
             assert_eq!(values[i], map.value(at));
-            assert_eq!((local[i], detail[i]), (map.local(at, 0.5), map.detail(at)));
-            let settled = map.constrain(DVec2::new(20.0, 15.0), at, needed[i]);
-            // Those about which it is asked may stay, too.
-            assert!(unconstrained[i] == 0 || settled == at);
+            let (mut one_local, mut one_detail) = ([0.5], [0.0]);
+            map.surroundings(&x[i..=i], &y[i..=i], &mut one_local, &mut one_detail);
+            assert_eq!((local[i], detail[i]), (one_local[0], one_detail[0]));
+            let settled = constrained(&map, DVec2::new(20.0, 15.0), at, needed[i]);
+            assert_eq!(settled, DVec2::new(to_x[i], to_y[i]));
+            assert!(map.accepted_at(at) <= needed[i] || settled == at);
             moved += usize::from(settled != at);
         }
         assert!((20..180).contains(&moved), "{moved}");
@@ -310,13 +321,13 @@ mod tests {
             };
             let size = DVec2::new(width as f64, height as f64);
             for _ in 0..400 {
-                let centre = place(0.5 * size, size + 3.0);
-                let moved = place(centre, DVec2::splat(8.0));
-                let value = map.value(centre);
+                let center = place(0.5 * size, size + 3.0);
+                let moved = place(center, DVec2::splat(8.0));
+                let value = map.value(center);
                 for needed in [0.0, 0.3 * value, value.next_down()] {
                     if value > 0.0 {
-                        let [x, y] = map.pixel(map.constrain(centre, moved, needed));
-                        assert!(pixels[y * width + x] > 0.0, "{centre} {moved} {needed}");
+                        let [x, y] = map.pixel(constrained(&map, center, moved, needed));
+                        assert!(pixels[y * width + x] > 0.0, "{center} {moved} {needed}");
                     }
                 }
             }

@@ -1,6 +1,6 @@
 //! Relaxed points: the same tiles, ranks and acceptance, and then a step aside.
 //!
-//! Every point is accepted or not at its fixed centre, with the importance of the nearest place in the
+//! Every point is accepted or not at its fixed center, with the importance of the nearest place in the
 //! domain, and then moved by the vector of its classes and of the local density phase. What lies in
 //! the domain is decided by where it ends up; so the walk's regions are widened by [`margin`].
 
@@ -131,7 +131,7 @@ impl<S: Scalar> Chunk<S> {
 }
 
 impl<I: Importance> Displacer<'_, '_, I> {
-    /// The place of the domain nearest to a centre.
+    /// The place of the domain nearest to a center.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S, y: S) -> DVec2 {
         let corner = self.sampling.placement().domain().min();
@@ -139,13 +139,14 @@ impl<I: Importance> Displacer<'_, '_, I> {
     }
 
     /// The phase that a point reads, and the detail. `at` is the place of the domain nearest to its
-    /// centre, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
+    /// center, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
-        let local = self.sampling.scale().threshold(importance.local(at, value));
-        let detail = if self.displacements.has_rough() { importance.detail(at) } else { 0.0 };
-        ((local * per_tile).clamp(1.0, DELTA), detail)
+        let (mut local, mut detail) = ([value], [0.0]);
+        importance.surroundings(&[at.x], &[at.y], &mut local, &mut detail);
+        let phase = (self.sampling.scale().threshold(local[0]) * per_tile).clamp(1.0, DELTA);
+        (phase, if self.displacements.has_rough() { detail[0] } else { 0.0 })
     }
 
     /// Moves all points of a packed chunk, a run at a time.
@@ -173,10 +174,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
     fn nothing_constrains(&self) -> bool {
         let (sampling, node) = (self.sampling, &self.batch.node);
         let (placement, importance) = (sampling.placement(), sampling.importance());
-        let centre = placement.domain().min() + placement.centre(node);
+        let center = placement.domain().min() + placement.center(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
         importance.longest_constraint() <= 0.0
-            && importance.lower_bound(&Disc { centre, radius }) > 0.0
+            && importance.lower_bound(&Disc { center, radius }) > 0.0
     }
 
     /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
@@ -282,37 +283,38 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let corner = placement.domain().min();
         let block = self.batch.block(placement);
         let len = run.len().min(RUN);
-        // Where the points are moved, or the nearest place in the domain: out of it they end.
+        // Where the points come from and are moved to, or the nearest place in the domain: those that are
+        // moved out of it end out of it.
+        let (mut from_x, mut from_y) = ([0.0; RUN], [0.0; RUN]);
         let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
         for k in 0..len {
             let i = run.start + k;
-            let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
-            [at_x[k], at_y[k]] = moved.to_array();
+            let (x, y) = (chunk.x[i], chunk.y[i]);
+            [from_x[k], from_y[k]] = self.nearest(x, y).to_array();
+            (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
+            [at_x[k], at_y[k]] = self.nearest(chunk.x[i], chunk.y[i]).to_array();
         }
         for (k, needed) in needed[..len].iter_mut().enumerate() {
             let entry = chunk.entry[run.start + k].into();
             *needed = scale.importance_of(self.batch.rank(block, entry));
         }
-        let mut unconstrained = [0u8; RUN];
-        let to = &mut unconstrained[..len];
-        importance.unconstrained(&at_x[..len], &at_y[..len], &needed[..len], to);
+        let (moved_x, moved_y) = (at_x, at_y);
+        let to = [&mut at_x[..len], &mut at_y[..len]];
+        importance.constrain([&from_x[..len], &from_y[..len]], &needed[..len], to);
         for k in 0..len {
             let i = run.start + k;
-            let (x, y) = (chunk.x[i], chunk.y[i]);
-            (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
-            if unconstrained[k] == 0 {
-                let moved = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-                if moved == DVec2::new(at_x[k], at_y[k]) {
-                    let settled = importance.constrain(self.nearest(x, y), moved, needed[k]);
-                    if settled != moved {
-                        [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
-                    }
+            let (moved, settled) =
+                (DVec2::new(moved_x[k], moved_y[k]), DVec2::new(at_x[k], at_y[k]));
+            if settled != moved {
+                let place = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
+                if place == moved {
+                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
                 }
             }
         }
     }
 
-    /// The step of any point of the chunk: a frontier tile's own centre, and centres of an opened tile's
+    /// The step of any point of the chunk: a frontier tile's own center, and centers of an opened tile's
     /// children with points far below them.
     #[inline(never)]
     fn step<S: Scalar>(&self, chunk: &Chunk<S>, i: usize) -> [S; 2] {
@@ -330,15 +332,15 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let below = usize::from(level.saturating_sub(node.level));
         let block = batch.block(placement);
         let child = match below {
-            // A child is one level below the tile; further down its centre is followed.
+            // A child is one level below the tile; further down its center is followed.
             2.. => node.child(tables, entry),
             _ => None,
         };
         let (formula, coefficients) = match child {
-            _ if entry == 0 => (ClassFormula::of_centre(tables, ancestry, node, below), (0, 0)),
+            _ if entry == 0 => (ClassFormula::of_center(tables, ancestry, node, below), (0, 0)),
             Some(child) => {
                 let ancestry = ancestry.child(node, entry, &child);
-                (ClassFormula::of_centre(tables, &ancestry, &child, below - 1), (0, 0))
+                (ClassFormula::of_center(tables, &ancestry, &child, below - 1), (0, 0))
             }
             // A bound that need not hold may have hidden that a point is deeper than any here.
             None => (
