@@ -52,11 +52,11 @@ def golden_cases():
     maps = ["ramp", "texture", "edges", "hot-spot"]
     for seed, n in itertools.product([1, 2], [3, 50, 1000, 40_000]):
         yield f"constant-unit-{seed}-{n}", None, n, seed, None, False
-        yield f"constant-off-centre-{seed}-{n}", None, n, seed, OFF_CENTER, False
+        yield f"constant-off-center-{seed}-{n}", None, n, seed, OFF_CENTER, False
         for name in maps:
             yield f"{name}-{seed}-{n}", name, n, seed, None, False
         yield f"ramp-unit-{seed}-{n}", "ramp", n, seed, (0, 0, 1, 1), False
-        yield f"texture-off-centre-{seed}-{n}", "texture", n, seed, OFF_CENTER, False
+        yield f"texture-off-center-{seed}-{n}", "texture", n, seed, OFF_CENTER, False
         yield f"texture-power-of-two-{seed}-{n}", "texture", n, seed, (0, 0, 2, 2), False
     for seed in [1, 2]:
         for n in [40, 3000, 12_000, 40_000, 90_000]:
