@@ -8,20 +8,17 @@ import pydoc
 import subprocess
 import sys
 from importlib.resources import files
-from pathlib import Path
 
 import numpy as np
 import pytest
 import twelvefold
-from twelvefold import _api
 
 FUNCTIONS = [name for name in twelvefold.__all__ if name != "__version__"]
 
 
 def test_examples_in_the_documentation_are_right():
-    for module in (twelvefold, _api):
-        failed, tried = doctest.testmod(module)
-        assert not failed and tried
+    failed, tried = doctest.testmod(twelvefold)
+    assert not failed and tried > 2 * len(FUNCTIONS)
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)

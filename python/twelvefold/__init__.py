@@ -39,3 +39,8 @@ __all__ = [
     "stipple",
     "__version__",
 ]
+
+# Where everybody finds them, for `help()` and error messages.
+for _public in (Placement, environment, exactly, measure, sample, stipple):
+    _public.__module__ = __name__
+del _public
