@@ -1,10 +1,37 @@
 //! Numbers, rectangles and names among the arguments.
 
 use glam::DVec2;
+use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use twelvefold::{Amount, Domain};
 
 use crate::error;
+
+/// An argument as it is written in Python.
+fn shown(argument: &Bound<'_, PyAny>) -> String {
+    argument.repr().map_or_else(|_| "unreadable".to_owned(), |text| text.to_string())
+}
+
+/// An argument of a simple type.
+fn simple<'py, T: FromPyObjectOwned<'py>>(
+    name: &str,
+    argument: &Bound<'py, PyAny>,
+    wanted: &str,
+) -> PyResult<T> {
+    argument
+        .extract()
+        .map_err(|_| error::kind(format!("{name} is {}; it should be {wanted}", shown(argument))))
+}
+
+/// True or False.
+pub(crate) fn flag(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<bool> {
+    simple(name, argument, "True or False")
+}
+
+/// A number, or nothing.
+pub(crate) fn number(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
+    argument.map(|argument| simple(name, argument, "a number")).transpose()
+}
 
 /// The items of a sequence of this length: a tuple, a list, an array.
 fn items<'py, const N: usize>(
@@ -53,11 +80,10 @@ where
     T: for<'a, 'py> FromPyObject<'a, 'py, Error = PyErr> + std::fmt::Display + PartialOrd,
 {
     let bad = |is: &str| format!("{name} is {is}; it should be a whole number from 0 to {most}");
-    let text = || number.repr().map_or_else(|_| "no number".to_owned(), |text| text.to_string());
     let number_of = |index: Bound<'_, PyAny>| index.extract::<T>().ok().filter(|n| *n <= most);
     match number.call_method0("__index__") {
-        Ok(index) => number_of(index).ok_or_else(|| error::value(bad(&text()))),
-        Err(_) => Err(error::kind(bad(&text()))),
+        Ok(index) => number_of(index).ok_or_else(|| error::value(bad(&shown(number)))),
+        Err(_) => Err(error::kind(bad(&shown(number)))),
     }
 }
 
@@ -72,8 +98,11 @@ pub(crate) fn count(number: &Bound<'_, PyAny>) -> PyResult<usize> {
 }
 
 /// About how many points.
-pub(crate) fn amount(n: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
-    match (n, density) {
+pub(crate) fn amount(
+    n: Option<&Bound<'_, PyAny>>,
+    density: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Amount> {
+    match (number("n", n)?, number("density", density)?) {
         (Some(n), None) => Ok(Amount::Points(n)),
         (None, Some(density)) => Ok(Amount::Density(density)),
         (None, None) => Err(error::value("give n or density")),
@@ -82,8 +111,13 @@ pub(crate) fn amount(n: Option<f64>, density: Option<f64>) -> PyResult<Amount> {
 }
 
 /// One of a few words, as what it stands for.
-pub(crate) fn choice<T: Copy>(name: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
-    match choices.iter().find(|(known, _)| *known == word) {
+pub(crate) fn choice<T: Copy>(
+    name: &str,
+    word: &Bound<'_, PyAny>,
+    choices: &[(&str, T)],
+) -> PyResult<T> {
+    let word: String = simple(name, word, "a word")?;
+    match choices.iter().find(|(known, _)| **known == word) {
         Some((_, meaning)) => Ok(*meaning),
         None => {
             let known: Vec<_> = choices.iter().map(|(known, _)| format!("'{known}'")).collect();

@@ -27,14 +27,14 @@ pub(crate) fn environment<'py>(
     py: Python<'py>,
     map: &Bound<'py, PyAny>,
     n: &Bound<'py, PyAny>,
-    method: &str,
-    frame: &str,
-    rotate: f64,
+    method: &Bound<'py, PyAny>,
+    frame: &Bound<'py, PyAny>,
+    rotate: &Bound<'py, PyAny>,
     seed: &Bound<'py, PyAny>,
-    filter: &str,
-    negative: &str,
+    filter: &Bound<'py, PyAny>,
+    negative: &Bound<'py, PyAny>,
     infinite: &Bound<'py, PyAny>,
-    nan: &str,
+    nan: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let n = arguments::count(n)?;
     let seed = arguments::seed(seed)?;
@@ -55,6 +55,7 @@ pub(crate) fn environment<'py>(
     if filter == Filter::Bilinear && !matches!(method, Method::Sobol(_)) {
         return Err(error::value("filter='bilinear' needs method='sobol'"));
     }
+    let rotate = arguments::number("rotate", Some(rotate))?.unwrap_or_default();
     if !rotate.is_finite() {
         return Err(error::value(format!("rotate is {rotate}; it should be finite")));
     }
@@ -104,12 +105,9 @@ fn infinite_policy(policy: &Bound<'_, PyAny>) -> PyResult<InfiniteRadiance> {
         }
         Err(_) => {}
     }
-    let word: String = policy
-        .extract()
-        .map_err(|_| error::kind("infinite should be 'reject', 'zero' or a number"))?;
     arguments::choice(
         "infinite",
-        &word,
+        policy,
         &[("reject", InfiniteRadiance::Reject), ("zero", InfiniteRadiance::Zero)],
     )
 }

@@ -21,11 +21,11 @@ impl Placement {
     fn new(
         domain: &Bound<'_, PyAny>,
         seed: &Bound<'_, PyAny>,
-        density: Option<f64>,
+        density: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let domain = arguments::domain("domain", domain)?;
         let seed = arguments::seed(seed)?;
-        let inner = match density {
+        let inner = match arguments::number("density", density)? {
             None => twelvefold::Placement::new(domain, seed),
             Some(density) => twelvefold::Placement::aligned(domain, seed, density)
                 .map_err(|reason| error::value(format!("density is {density}: {reason}")))?,
@@ -84,17 +84,25 @@ pub(crate) fn sample<'py>(
     domain: Option<&Bound<'py, PyAny>>,
     seed: &Bound<'py, PyAny>,
     importance: Option<&Bound<'py, PyAny>>,
-    n: Option<f64>,
-    density: Option<f64>,
-    relaxed: bool,
+    n: Option<&Bound<'py, PyAny>>,
+    density: Option<&Bound<'py, PyAny>>,
+    relaxed: &Bound<'py, PyAny>,
     double: bool,
-    weights: bool,
-    ranks: bool,
+    weights: &Bound<'py, PyAny>,
+    ranks: &Bound<'py, PyAny>,
     part: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let amount = arguments::amount(n, density)?;
     let part = part.map(arguments::part).transpose()?;
-    let wish = Wish { amount, relaxed, double, weights, ranks, part }.check()?;
+    let wish = Wish {
+        amount,
+        relaxed: arguments::flag("relaxed", relaxed)?,
+        double,
+        weights: arguments::flag("weights", weights)?,
+        ranks: arguments::flag("ranks", ranks)?,
+        part,
+    }
+    .check()?;
     let place = Place::new(kept, domain, seed)?;
     match importance {
         None => sampling::receive(py, place.placement(Domain::UNIT), || Ok(Constant::ONE), wish),

@@ -20,13 +20,15 @@ pub(crate) fn stipple<'py>(
     image: &Bound<'py, PyAny>,
     n: &Bound<'py, PyAny>,
     refine: &Bound<'py, PyAny>,
-    exact: bool,
+    exact: &Bound<'py, PyAny>,
     seed: &Bound<'py, PyAny>,
-    invert: bool,
+    invert: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let n = arguments::count(n)?;
     let refine = arguments::whole("refine", refine, MOST_ITERATIONS)?;
     let seed = arguments::seed(seed)?;
+    let exact = arguments::flag("exact", exact)?;
+    let invert = arguments::flag("invert", invert)?;
     let image = tone::importance("image", image, invert)?;
     if n > 0 && image.2.iter().all(|pixel| *pixel == 0.0) {
         let blank = if invert { "black" } else { "white" };

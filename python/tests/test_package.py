@@ -66,6 +66,8 @@ def part(i):
     return twelvefold.sample(n=200_000, part=(i, 4))
 
 
+# What Python warns of since 3.12: a child has none of its parent's threads. So it gets its own.
+@pytest.mark.filterwarnings("ignore:.*multi-threaded:DeprecationWarning")
 @pytest.mark.parametrize("start", multiprocessing.get_all_start_methods())
 def test_processes_make_parts_however_they_start(start):
     whole = twelvefold.sample(n=200_000)
