@@ -118,28 +118,7 @@ impl<'a> Refiner<'a> {
         pixels: &'a [f32],
         points: &[P],
     ) -> Result<Self, RefineError> {
-        let ink = Simd::detect().run(
-            #[inline(always)]
-            || Ink::new(width, height, pixels),
-        )?;
-        if points.is_empty() {
-            return Ok(Self { work: None });
-        }
-        let xy = |point: &P| point.xy().map(Scalar::to_f64);
-        let mut dots = cells::dots(points.iter().map(xy))?;
-        let ink = ink.ok_or(RefineError::NoInk)?;
-        let density = Simd::detect().run(
-            #[inline(always)]
-            || Density::new(&ink, dots.len()),
-        )?;
-        let cells = Cells::new(&ink, dots.len(), density.usual_spacing)?;
-        let mut coarse = Simd::detect().run(
-            #[inline(always)]
-            || Coarse::new(&ink, &density, dots.len()),
-        )?;
-        start::prepare(&ink, &density, &mut coarse, &mut dots)?;
-        let sorted = filled(dots.len(), Dot::default())?;
-        Ok(Self { work: Some(Work { ink, density, coarse, cells, dots, sorted }) })
+        Ok(Self { work: Work::new(width, height, pixels, points, false)? })
     }
 
     /// One iteration.
@@ -187,7 +166,43 @@ fn write<P: Position>(dots: &[Dot], points: &mut [P]) -> Result<(), RefineError>
     Ok(())
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    /// See [`Refiner::new`]; points that are `spread` well stay where they are, if that is on ink. `None` without any.
+    fn new<P: Position>(
+        width: usize,
+        height: usize,
+        pixels: &'a [f32],
+        points: &[P],
+        spread: bool,
+    ) -> Result<Option<Self>, RefineError> {
+        let ink = Simd::detect().run(
+            #[inline(always)]
+            || Ink::new(width, height, pixels),
+        )?;
+        if points.is_empty() {
+            return Ok(None);
+        }
+        let xy = |point: &P| point.xy().map(Scalar::to_f64);
+        let mut dots = cells::dots(points.iter().map(xy))?;
+        let ink = ink.ok_or(RefineError::NoInk)?;
+        let density = Simd::detect().run(
+            #[inline(always)]
+            || Density::new(&ink, dots.len()),
+        )?;
+        let cells = Cells::new(&ink, dots.len(), density.usual_spacing)?;
+        let mut coarse = Simd::detect().run(
+            #[inline(always)]
+            || Coarse::new(&ink, &density, dots.len()),
+        )?;
+        if spread {
+            start::admit(&ink, &density, &mut dots)?;
+        } else {
+            start::prepare(&ink, &density, &mut coarse, &mut dots)?;
+        }
+        let sorted = filled(dots.len(), Dot::default())?;
+        Ok(Some(Self { ink, density, coarse, cells, dots, sorted }))
+    }
+
     /// Puts the dots in the order of the cells.
     fn sort(&mut self) {
         self.cells.sort(&self.dots, &mut self.sorted);

@@ -19,6 +19,21 @@ pub(super) fn prepare(
     coarse: &mut Coarse,
     dots: &mut [Dot],
 ) -> Result<(), RefineError> {
+    bring(ink, dots)?;
+    coarse.measure(dots);
+    let unfair = coarse.unevenness() > UNFAIR * dots.len() as f64;
+    spread(ink, unfair, dots)?;
+    part(ink, density, dots)
+}
+
+/// Of dots that are well spread, moves only those that cannot stay.
+pub(super) fn admit(ink: &Ink<'_>, density: &Density, dots: &mut [Dot]) -> Result<(), RefineError> {
+    bring(ink, dots)?;
+    part(ink, density, dots)
+}
+
+/// Dots on white, or outside, go to the nearest ink.
+fn bring(ink: &Ink<'_>, dots: &mut [Dot]) -> Result<(), RefineError> {
     let mut nearest = None;
     for dot in dots.iter_mut().filter(|dot| !ink.holds(dot.x, dot.y)) {
         if nearest.is_none() {
@@ -28,10 +43,7 @@ pub(super) fn prepare(
             (dot.x, dot.y) = nearest.bring(dot.x, dot.y);
         }
     }
-    coarse.measure(dots);
-    let unfair = coarse.unevenness() > UNFAIR * dots.len() as f64;
-    spread(ink, unfair, dots)?;
-    part(ink, density, dots)
+    Ok(())
 }
 
 /// cos and sin of the golden angle, π (3 − √5).

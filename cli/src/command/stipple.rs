@@ -21,7 +21,7 @@ use crate::page::color::Color;
 use crate::page::options::Order;
 use crate::page::sheet::STEPS;
 use crate::pens::{Inks, InksError, Pens};
-use crate::stipple::dots::{self, Count, DotsError};
+use crate::stipple::dots::{self, Count, DotsError, Wish};
 use crate::stipple::gain;
 use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
 
@@ -193,10 +193,14 @@ fn draw(
         .map_err(|error| DotsError::Taker(DrawError::Drawing(error)))?;
     let mut drawn = Drawn::default();
     if inks.is_some() || plan.needs_list() {
-        let mut dots = dots::list(picture, plan.wish, || {})?;
+        // What is polished before it has pens is moved again.
+        let several = inks.as_ref().is_some_and(|inks| inks.pens.len() > 1);
+        let wish = Wish { best: plan.wish.best && !several, ..plan.wish };
+        let mut dots = dots::list(picture, wish, || {})?;
         let class_of = match &inks {
-            Some(inks) => dots::classified(&inks.classes, &mut dots, plan.wish.refine)
-                .map_err(DotsError::Refine)?,
+            Some(inks) => {
+                dots::classified(&inks.classes, &mut dots, plan.wish).map_err(DotsError::Refine)?
+            }
             None => Vec::new(),
         };
         let layers = layers(inks, dots, class_of, plan).map_err(DotsError::Taker)?;

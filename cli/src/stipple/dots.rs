@@ -176,7 +176,7 @@ fn refined(
 pub(crate) fn classified(
     classes: &Classes,
     dots: &mut [DVec2],
-    iterations: usize,
+    wish: Wish,
 ) -> Result<Vec<u8>, RefineError> {
     let mut class_of = Vec::new();
     let bytes = dots.len();
@@ -184,8 +184,11 @@ pub(crate) fn classified(
     class_of.resize(dots.len(), 0);
     if classes.planes().len() > 1 {
         let mut refiner = ClassRefiner::new(classes, dots)?;
-        for _ in 0..iterations {
+        for _ in 0..wish.refine {
             refiner.step();
+        }
+        if wish.best {
+            refiner.polish()?;
         }
         refiner.write(dots, &mut class_of)?;
     }

@@ -58,6 +58,9 @@ fn write_table(options: &ClassesOptions) -> Result<(), Box<dyn std::error::Error
         }
         refiner.write(&mut dots, &mut class)?;
         print("refined", shares, &dots, &class)?;
+        refiner.polish()?;
+        refiner.write(&mut dots, &mut class)?;
+        print("polished", shares, &dots, &class)?;
     }
     Ok(())
 }

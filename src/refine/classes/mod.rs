@@ -21,7 +21,7 @@ use super::density::Density;
 use super::error::{RefineError, filled, reserve};
 use super::ink::Ink;
 use super::threads::{PART, for_parts};
-use super::{FURTHEST, MOMENTUM, Refiner, STEP, Work, force};
+use super::{FURTHEST, MOMENTUM, STEP, Work, force, polish};
 use crate::position::Position;
 use crate::simd::Simd;
 use exchange::{Exchange, Pyramid};
@@ -89,7 +89,7 @@ impl Classes {
 
 /// Dots of several classes on their way.
 ///
-/// Memory, beyond that of a [`Refiner`]: 60 bytes a dot, 8 more for each class; 15 bytes a pixel for each
+/// Memory, beyond that of a [`Refiner`](super::Refiner): 60 bytes a dot, 8 more for each class; 15 bytes a pixel for each
 /// class.
 ///
 /// ```
@@ -125,7 +125,7 @@ struct ClassWork<'a> {
     /// By the dots' indices.
     class_of: Vec<u8>,
     exchange: Exchange,
-    /// Where dots were before the flow.
+    /// Where dots were before a move that asks nothing about classes.
     before: Vec<[f32; 2]>,
 }
 
@@ -160,7 +160,7 @@ impl<'a> Class<'a> {
 }
 
 impl<'a> ClassRefiner<'a> {
-    /// Dots at `points`, in pixels, which should be even already, as those of a [`Refiner`] of the classes'
+    /// Dots at `points`, in pixels, which should be even already, as those of a [`Refiner`](super::Refiner) of the classes'
     /// [`total`](Classes::total) are: classes are assigned, and exchanged while that is of use. Each class
     /// gets its share of the dots, to one or two.
     ///
@@ -171,7 +171,7 @@ impl<'a> ClassRefiner<'a> {
     /// Points but no pixel above 0; a point that is not finite; too little memory.
     pub fn new<P: Position>(classes: &'a Classes, points: &[P]) -> Result<Self, RefineError> {
         let (width, height) = (classes.width, classes.height);
-        let Some(mut all) = Refiner::new(width, height, &classes.total, points)?.work else {
+        let Some(mut all) = Work::new(width, height, &classes.total, points, true)? else {
             return Ok(Self { work: None });
         };
         let class_of = assign::assign(classes, &all.dots)?;
@@ -204,6 +204,24 @@ impl<'a> ClassRefiner<'a> {
             work.sort_classes();
             work.exchange(1);
         }
+    }
+
+    /// Makes the tone about each dot right, as [`Refiner::polish`](super::Refiner::polish) does; those of a class come
+    /// somewhat nearer to each other by it. For after the last [`step`](Self::step).
+    ///
+    /// # Errors
+    /// Too little memory. The dots are then as they were.
+    pub fn polish(&mut self) -> Result<(), RefineError> {
+        let Some(work) = &mut self.work else { return Ok(()) };
+        work.all.sort();
+        work.note();
+        let Work { ink, density, cells, dots, .. } = &mut work.all;
+        polish::polish(ink, density, cells, dots)?;
+        work.call_back();
+        work.all.sort();
+        work.sort_classes();
+        work.exchange(FIRST_EXCHANGES);
+        Ok(())
     }
 
     /// Writes where the dots are now and their classes, in the order of the points that they were.
@@ -287,15 +305,25 @@ impl ClassWork<'_> {
 
     /// Evens out what is too much or too little of all dots; none leaves the ink of its class.
     fn drift(&mut self) {
+        self.note();
         let Work { ink, coarse, dots, .. } = &mut self.all;
-        for (before, dot) in self.before.iter_mut().zip(&*dots) {
-            *before = [dot.x, dot.y];
-        }
         Simd::detect().run(
             #[inline(always)]
             || coarse.drift(ink, dots),
         );
-        for (before, dot) in self.before.iter().zip(dots) {
+        self.call_back();
+    }
+
+    /// Notes where the dots are.
+    fn note(&mut self) {
+        for (before, dot) in self.before.iter_mut().zip(&self.all.dots) {
+            *before = [dot.x, dot.y];
+        }
+    }
+
+    /// Brings dots that have left the ink of their class back to where they were noted.
+    fn call_back(&mut self) {
+        for (before, dot) in self.before.iter().zip(&mut self.all.dots) {
             let number = self.class_of[dot.index as usize];
             let class = self.classes.get(usize::from(number)).and_then(Option::as_ref);
             if !class.is_some_and(|class| class.ink.holds(dot.x, dot.y)) {
