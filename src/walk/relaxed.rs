@@ -12,6 +12,7 @@ use super::ancestry::{Ancestry, ClassFormula};
 use super::candidates::Candidates;
 use super::chunk::{CHUNK, Chunk};
 use super::context::Context;
+use super::seam::Seam;
 use crate::domain::Disc;
 use crate::error::SamplingError;
 use crate::importance::Importance;
@@ -20,9 +21,8 @@ use crate::position::{Position, Scalar};
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
 use crate::tables::displacement::RUN;
-use crate::tiling::counts::RECIPROCALS;
 use crate::tiling::numbers::{DELTA, Rotation};
-use crate::tiling::{MAX_LEVEL, TileCounts};
+use crate::tiling::MAX_LEVEL;
 use crate::tree::frame::EdgeFrame;
 
 /// How far, in units, points born at `level` or later may be moved: a vector is at most
@@ -75,7 +75,11 @@ impl<S: Scalar> Chunk<S> {
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
         let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
-        if batch.inside {
+        let seam = if batch.inside { None } else { Seam::of(sampling.placement()) };
+        if seam.is_some() {
+            self.wrap(sampling.placement());
+        }
+        if batch.inside || seam.is_some() {
             self.read_values(sampling);
         } else {
             let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
@@ -91,7 +95,8 @@ impl<S: Scalar> Chunk<S> {
         } else {
             self.mark_accepted(sampling, batch)?;
         }
-        if !batch.inside {
+        // Across a seam, what is far from the clip may be near.
+        if !batch.inside && seam.is_none() {
             self.reject_far(walk);
         }
         match sure && batch.inside {
@@ -117,7 +122,8 @@ impl<S: Scalar> Chunk<S> {
             least = if *keep == 1 && *value < least { *value } else { least };
         }
         // The sparser, the longer are the vectors.
-        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(least));
+        let counts = sampling.placement().numbering().counts();
+        let level = counts.level_of(sampling.scale().threshold(least));
         let margin = margin(sampling, level) * (1.0 + 1e-6);
         let corner = sampling.placement().domain().min();
         let (low, high) = clip.widened(margin);
@@ -175,7 +181,9 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, importance) = (sampling.placement(), sampling.importance());
         let centre = placement.domain().min() + placement.centre(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
-        importance.longest_constraint() <= 0.0
+        let wraps = !self.batch.inside && placement.is_seamless();
+        !wraps
+            && importance.longest_constraint() <= 0.0
             && importance.lower_bound(&Disc { centre, radius }) > 0.0
     }
 
@@ -195,12 +203,13 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, scale) = (sampling.placement(), sampling.scale());
         let level = usize::from(batch.node.level);
         let block = batch.block(placement);
+        let numbering = placement.numbering();
         let tiles = |below: usize| {
-            TileCounts::HEXAGON.all().get(level + below).map_or(f64::INFINITY, |n| *n as f64)
+            numbering.counts().all().get(level + below).map_or(f64::INFINITY, |n| *n as f64)
         };
         let (tiles_1, tiles_2) = (tiles(1), tiles(2));
         let most = if placement.tables().depth() < 3 { tiles_2 } else { tiles(3) };
-        let per_tile = |below: usize| RECIPROCALS.get(level + below).copied().unwrap_or(0.0);
+        let per_tile = |below: usize| numbering.reciprocal(level + below);
         let per_tile = [per_tile(0), per_tile(1), per_tile(2)];
         // Past this, a point is moved at all.
         let least = tiles(usize::from(FIRST_RELAXED_LEVEL - 1).saturating_sub(level));
@@ -289,9 +298,17 @@ impl<I: Importance> Displacer<'_, '_, I> {
             let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
             [at_x[k], at_y[k]] = moved.to_array();
         }
+        let seam = if self.batch.inside { None } else { Seam::of(placement) };
+        if let Some(seam) = &seam {
+            for k in 0..len {
+                let i = run.start + k;
+                let moved = [chunk.x[i] + dx[k], chunk.y[i] + dy[k]].map(S::to_f64);
+                [at_x[k], at_y[k]] = seam.wrapped(corner + DVec2::from_array(moved)).to_array();
+            }
+        }
         for (k, needed) in needed[..len].iter_mut().enumerate() {
             let entry = chunk.entry[run.start + k].into();
-            *needed = scale.importance_of(self.batch.rank(block, entry));
+            *needed = scale.importance_of(self.batch.rank(placement.numbering(), block, entry));
         }
         let mut unconstrained = [0u8; RUN];
         let to = &mut unconstrained[..len];
@@ -307,6 +324,9 @@ impl<I: Importance> Displacer<'_, '_, I> {
                     if settled != moved {
                         [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
                     }
+                } else if seam.is_some() {
+                    // No way leads over the seam: the point stays at its center.
+                    (chunk.x[i], chunk.y[i]) = (x, y);
                 }
             }
         }
@@ -320,18 +340,19 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (entry, value) = (usize::from(chunk.entry[i]), chunk.values[i]);
         let (placement, node) = (sampling.placement(), &batch.node);
         let tables = placement.tables();
-        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(value));
+        let numbering = placement.numbering();
+        let level = numbering.counts().level_of(sampling.scale().threshold(value));
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
         let at = self.nearest(chunk.x[i], chunk.y[i]);
-        let (phase, detail) = self.phase(at, value, RECIPROCALS[usize::from(level) - 1]);
+        let (phase, detail) = self.phase(at, value, numbering.reciprocal(usize::from(level) - 1));
         let reading = self.displacements.reading(phase, detail);
         let below = usize::from(level.saturating_sub(node.level));
         let block = batch.block(placement);
         let child = match below {
             // A child is one level below the tile; further down its centre is followed.
-            2.. => node.child(tables, entry),
+            2.. => node.child(tables, numbering, entry),
             _ => None,
         };
         let (formula, coefficients) = match child {

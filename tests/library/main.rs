@@ -9,6 +9,7 @@ mod hard_cases;
 mod invariance;
 mod laws;
 mod numbering;
+mod seamless;
 mod tables;
 mod tiling;
 mod value_stability;
