@@ -8,8 +8,8 @@ use crate::domain::Domain;
 use crate::error::SamplingError;
 use crate::random::SplitMix64;
 use crate::tables::{DisplacementTable, ExactPoint, Tables};
-use crate::tiling::numbers::{REACH, SQRT_3, direction, lambda_power};
 use crate::tiling::counts::Numbering;
+use crate::tiling::numbers::{REACH, SQRT_3, direction, lambda_power};
 use crate::tiling::{FCode, MAX_LEVEL, RankError, TileCounts, TileType};
 use crate::tree::frame::Frame;
 use crate::tree::node::Node;
@@ -17,6 +17,8 @@ use torus::Torus;
 
 /// The level of the few tiles at which every walk of a placement starts.
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
+
+const _: () = assert!(FRONTIER_LEVEL == torus::ROOT_LEVEL + 1, "children of roots");
 
 /// Points of earlier levels stay where they are: they occur where fewer than some four points are
 /// expected in a domain, and the tiles from which they could move in would be very many.

@@ -10,7 +10,6 @@
 
 use glam::DVec2;
 
-use super::FRONTIER_LEVEL;
 use crate::tables::{ExactPoint, Tables};
 use crate::tiling::counts::Numbering;
 use crate::tiling::{FCode, MAX_CHILDREN, RankError, TileType, snub_square};
@@ -18,7 +17,7 @@ use crate::tree::frame::Frame;
 use crate::tree::node::Node;
 
 /// The level of the roots: their children are the frontier.
-pub(super) const ROOT_LEVEL: u8 = FRONTIER_LEVEL - 1;
+pub(super) const ROOT_LEVEL: u8 = 3;
 
 /// The most cells along a side: the rectangles of screens and sheets are within 16 : 9, and 1,024 roots cost
 /// a walk over few points a fraction of a millisecond.
@@ -163,7 +162,8 @@ impl Torus {
 /// The number nearest to `part` of `count` that has no common divisor with it.
 fn coprime_near(part: f64, count: u32) -> u32 {
     let wanted = (part * f64::from(count)) as u32;
-    (0..count).flat_map(|by| [wanted + by, wanted.saturating_sub(by)])
+    (0..count)
+        .flat_map(|by| [wanted + by, wanted.saturating_sub(by)])
         .find(|step| gcd(*step, count) == 1)
         .unwrap_or(1)
 }

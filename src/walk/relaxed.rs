@@ -21,8 +21,8 @@ use crate::position::{Position, Scalar};
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
 use crate::tables::displacement::RUN;
-use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tiling::MAX_LEVEL;
+use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tree::frame::EdgeFrame;
 
 /// How far, in units, points born at `level` or later may be moved: a vector is at most

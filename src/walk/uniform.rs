@@ -12,8 +12,8 @@ use crate::position::Scalar;
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
 use crate::tables::displacement::Reading;
-use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tiling::TileType;
+use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tree::frame::EdgeFrame;
 use crate::tree::node::Node;
 
@@ -81,7 +81,9 @@ impl<'a> UniformDisplacements<'a> {
     ) -> Option<Displaced<'_, S>> {
         let node = &batch.node;
         let is_block = node.level + LEVELS == self.level && batch.start > 0;
-        if !is_block || batch.end > ENTRIES {
+        // Over a seam, points are wrapped before they are moved.
+        let wraps = !batch.inside && placement.is_seamless();
+        if !is_block || wraps || batch.end > ENTRIES {
             return None;
         }
         if !self.known[node.kind.index()] {

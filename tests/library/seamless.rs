@@ -129,8 +129,11 @@ fn complete_levels_have_their_counts_and_one_nearest_distance() {
             let found = points(&sampling).unwrap();
             assert!(found.iter().map(|(rank, _)| *rank).eq(0..n as u64));
             assert!(found.iter().all(|(_, at)| domain.contains(*at)));
-            // 4√3 − 6 squared edges a point.
-            let edge = (domain.area() / (n * (48.0f64.sqrt() - 6.0))).sqrt();
+            // A cell is 2 cos 15° edges wide, and λ times as many a level on.
+            let finer = 2.0 + 3.0f64.sqrt();
+            let levels = [4.0, 56.0, 780.0].iter().position(|level| *level == tiles).unwrap();
+            let edges = f64::from(columns) * finer.sqrt() * finer.powi(levels as i32);
+            let edge = domain.size().x / edges;
             for least in nearest(&domain, &found) {
                 assert!((least / edge - 1.0).abs() < 1e-9, "{domain:?} {n}: {least} {edge}");
             }
@@ -156,8 +159,7 @@ fn every_number_of_points_is_exact_and_no_pair_is_close() {
                     // 0.26 spacings is one edge of the next level.
                     let spacing = (domain.area() / n).sqrt();
                     let least = nearest(&domain, &found).into_iter().fold(f64::INFINITY, f64::min);
-                    let most = if sampling.placement().tables().displacements().is_some() { 0.2 } else { 0.25 };
-                    assert!(least > most * spacing, "{domain:?} {n}: {}", least / spacing);
+                    assert!(least > 0.24 * spacing, "{domain:?} {n}: {}", least / spacing);
                 }
             }
         }
@@ -188,12 +190,12 @@ fn nine_copies_are_as_even_across_their_seams_as_within() {
     };
     let expected = 500.0 * std::f64::consts::PI * 0.04;
     for relaxed in [false, true] {
-        let [within, seam, corner] =
-            [1.5, 1.0, 2.0].map(|at| spread(relaxed, DVec2::new(at, if at < 2.0 { 1.5 } else { at })));
+        let [within, seam, corner] = [1.5, 1.0, 2.0]
+            .map(|at| spread(relaxed, DVec2::new(at, if at < 2.0 { 1.5 } else { at })));
         for (mean, variance) in [within, seam, corner] {
             // White noise has 63.
             assert!((mean - expected).abs() < 0.5, "{mean} {expected}");
-            assert!(variance < 7.0 && variance < 2.0 * within.1, "{variance} {within:?}");
+            assert!(variance < 12.0 && variance < 2.0 * within.1, "{variance} {within:?}");
         }
     }
 }
@@ -218,7 +220,7 @@ fn check_cuts<I: Importance>(sampling: Sampling<'_, I>) {
     let mut listed: Vec<_> = whole.iter().map(|(_, at)| key(at)).collect();
     written.sort_unstable();
     listed.sort_unstable();
-    assert_eq!(written, listed);
+    assert!(written == listed);
 
     let division = sampling.divide(5).unwrap();
     let mut parts: Vec<(u64, DVec2)> = (0..5)
@@ -229,9 +231,12 @@ fn check_cuts<I: Importance>(sampling: Sampling<'_, I>) {
     assert_eq!(parts, whole);
 
     // Corners, a strip over all the width, and more than the domain.
-    for [x, y, w, h] in
-        [[0.0, 0.0, 0.1, 0.2], [0.85, 0.7, 0.15, 0.3], [0.0, 0.97, 1.0, 0.03], [-1.0, -1.0, 3.0, 3.0]]
-    {
+    for [x, y, w, h] in [
+        [0.0, 0.0, 0.1, 0.2],
+        [0.85, 0.7, 0.15, 0.3],
+        [0.0, 0.97, 1.0, 0.03],
+        [-1.0, -1.0, 3.0, 3.0],
+    ] {
         let low = domain.min() + DVec2::new(x, y) * domain.size();
         let rectangle = Domain::new(low, DVec2::new(w, h) * domain.size()).unwrap();
         let expected: Vec<_> =
@@ -327,9 +332,12 @@ fn a_bound_that_is_too_low_across_the_seam_is_an_error() {
     let found = points(&sampling).unwrap();
     let right = found.iter().filter(|(_, at)| at.x > 0.9).count();
     assert!(right.abs_diff(600) < 40, "{right}");
-    let nan = Function::new(|_: DVec2| 1.0, |region: &twelvefold::Disc| {
-        if region.radius < 0.2 { f64::NAN } else { 1.0 }
-    });
+    let nan = Function::new(
+        |_: DVec2| 1.0,
+        |region: &twelvefold::Disc| {
+            if region.radius < 0.2 { f64::NAN } else { 1.0 }
+        },
+    );
     let sampling = Sampling::new(&placement, &nan, Amount::Density(3000.0)).unwrap();
     assert!(matches!(points(&sampling), Err(SamplingError::InvalidBound { .. })));
 }
