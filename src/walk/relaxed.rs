@@ -52,6 +52,8 @@ struct Displacer<'w, 'a, I> {
     /// Where importance is read.
     low: DVec2,
     high: DVec2,
+    /// The seam that points may be across, if there is one.
+    seam: Option<Seam>,
 }
 
 impl<S: Scalar> Chunk<S> {
@@ -74,18 +76,19 @@ impl<S: Scalar> Chunk<S> {
         let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
-        let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
         let seam = if batch.inside { None } else { Seam::of(sampling.placement()) };
-        if seam.is_some() {
-            self.wrap(sampling.placement());
-        }
-        if batch.inside || seam.is_some() {
+        let mover = Displacer { sampling, displacements, batch, ancestry, low, high, seam };
+        if batch.inside {
             self.read_values(sampling);
         } else {
             let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
             let len = self.len.min(CHUNK);
             for i in 0..len {
                 [x[i], y[i]] = mover.nearest(self.x[i], self.y[i]).to_array();
+            }
+            if let Some(seam) = &seam {
+                let places = (&mut x[..len], &mut y[..len]);
+                seam.wrapped_places(places, &self.x[..len], &self.y[..len]);
             }
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
@@ -181,8 +184,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, importance) = (sampling.placement(), sampling.importance());
         let centre = placement.domain().min() + placement.centre(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
-        let wraps = !self.batch.inside && placement.is_seamless();
-        !wraps
+        self.seam.is_none()
             && importance.longest_constraint() <= 0.0
             && importance.lower_bound(&Disc { centre, radius }) > 0.0
     }
@@ -222,6 +224,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
             let i = run.start + k;
             let at = self.nearest(chunk.x[i], chunk.y[i]);
             (at_x[k], at_y[k], local[k]) = (at.x, at.y, chunk.values[i]);
+        }
+        if let Some(seam) = &self.seam {
+            let places = (&mut at_x[..len], &mut at_y[..len]);
+            seam.wrapped_places(places, &chunk.x[run.clone()], &chunk.y[run.clone()]);
         }
         let (local, unread) = (&mut local[..len], &mut details[..len]);
         sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
@@ -272,6 +278,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
             for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
                 (*x, *y) = (*x + *dx, *y + *dy);
             }
+        } else if let Some(seam) = &self.seam {
+            self.constrain_across(seam, chunk, run, &dx, &dy);
         } else {
             self.constrain(chunk, run, &dx, &dy);
         }
@@ -298,14 +306,6 @@ impl<I: Importance> Displacer<'_, '_, I> {
             let moved = self.nearest(chunk.x[i] + dx[k], chunk.y[i] + dy[k]);
             [at_x[k], at_y[k]] = moved.to_array();
         }
-        let seam = if self.batch.inside { None } else { Seam::of(placement) };
-        if let Some(seam) = &seam {
-            for k in 0..len {
-                let i = run.start + k;
-                let moved = [chunk.x[i] + dx[k], chunk.y[i] + dy[k]].map(S::to_f64);
-                [at_x[k], at_y[k]] = seam.wrapped(corner + DVec2::from_array(moved)).to_array();
-            }
-        }
         for (k, needed) in needed[..len].iter_mut().enumerate() {
             let entry = chunk.entry[run.start + k].into();
             *needed = scale.importance_of(self.batch.rank(placement.numbering(), block, entry));
@@ -324,9 +324,44 @@ impl<I: Importance> Displacer<'_, '_, I> {
                     if settled != moved {
                         [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
                     }
-                } else if seam.is_some() {
-                    // No way leads over the seam: the point stays at its center.
-                    (chunk.x[i], chunk.y[i]) = (x, y);
+                }
+            }
+        }
+    }
+
+    /// The same across a seam, a point at a time.
+    #[inline(never)]
+    fn constrain_across<S: Scalar>(
+        &self,
+        seam: &Seam,
+        chunk: &mut Chunk<S>,
+        run: Range<usize>,
+        dx: &[S; RUN],
+        dy: &[S; RUN],
+    ) {
+        let (importance, scale) = (self.sampling.importance(), self.sampling.scale());
+        let placement = self.sampling.placement();
+        let (corner, block) = (placement.domain().min(), self.batch.block(placement));
+        for (i, (dx, dy)) in run.zip(dx.iter().zip(dy)) {
+            let (x, y) = (chunk.x[i], chunk.y[i]);
+            (chunk.x[i], chunk.y[i]) = (x + *dx, y + *dy);
+            let place = |x: S, y: S| corner + DVec2::new(x.to_f64(), y.to_f64());
+            let (center, moved) = (place(x, y), place(chunk.x[i], chunk.y[i]));
+            let (from, to) = (seam.wrapped(center), seam.wrapped(moved));
+            let rank = self.batch.rank(placement.numbering(), block, chunk.entry[i].into());
+            let needed = scale.importance_of(rank);
+            let mut unconstrained = [0];
+            importance.unconstrained(&[to.x], &[to.y], &[needed], &mut unconstrained);
+            if unconstrained == [1] {
+                continue;
+            }
+            if seam.is_between(center, moved) {
+                // No way leads over the seam: the point stays at its center.
+                (chunk.x[i], chunk.y[i]) = (x, y);
+            } else {
+                let settled = importance.constrain(from, to, needed);
+                if settled != to {
+                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
                 }
             }
         }
@@ -345,7 +380,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
-        let at = self.nearest(chunk.x[i], chunk.y[i]);
+        let at = match &self.seam {
+            Some(seam) => seam.place(chunk.x[i], chunk.y[i]),
+            None => self.nearest(chunk.x[i], chunk.y[i]),
+        };
         let (phase, detail) = self.phase(at, value, numbering.reciprocal(usize::from(level) - 1));
         let reading = self.displacements.reading(phase, detail);
         let below = usize::from(level.saturating_sub(node.level));

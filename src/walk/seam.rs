@@ -79,10 +79,36 @@ impl Seam {
         });
         DVec2::new(x, y)
     }
+
+    /// The same for a position relative to the domain's least corner.
+    pub(crate) fn place<S: Scalar>(&self, x: S, y: S) -> DVec2 {
+        self.wrapped(self.domain.min() + DVec2::new(x.to_f64(), y.to_f64()))
+    }
+
+    /// The same for many positions.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn wrapped_places<S: Scalar>(
+        &self,
+        (to_x, to_y): (&mut [f64], &mut [f64]),
+        x: &[S],
+        y: &[S],
+    ) {
+        for ((to_x, to_y), (x, y)) in to_x.iter_mut().zip(to_y).zip(x.iter().zip(y)) {
+            [*to_x, *to_y] = self.place(*x, *y).to_array();
+        }
+    }
+
+    /// Whether two places, less than a side outside, are on different sides of the seam.
+    pub(crate) fn is_between(&self, a: DVec2, b: DVec2) -> bool {
+        let sides = |at: DVec2| ((at - self.domain.min()) / self.domain.size()).floor();
+        sides(a) != sides(b)
+    }
 }
 
 impl<S: Scalar> Chunk<S> {
     /// Takes every candidate into the half-open domain, by a side at the most.
+    #[inline(never)]
     pub(super) fn wrap(&mut self, placement: &Placement<'_>) {
         let size = placement.domain().size();
         let len = self.len;

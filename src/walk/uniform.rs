@@ -81,9 +81,7 @@ impl<'a> UniformDisplacements<'a> {
     ) -> Option<Displaced<'_, S>> {
         let node = &batch.node;
         let is_block = node.level + LEVELS == self.level && batch.start > 0;
-        // Over a seam, points are wrapped before they are moved.
-        let wraps = !batch.inside && placement.is_seamless();
-        if !is_block || wraps || batch.end > ENTRIES {
+        if !is_block || batch.end > ENTRIES {
             return None;
         }
         if !self.known[node.kind.index()] {
