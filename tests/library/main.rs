@@ -8,6 +8,7 @@ mod frame;
 mod hard_cases;
 mod invariance;
 mod laws;
+mod meshes;
 mod numbering;
 mod seamless;
 mod tables;
