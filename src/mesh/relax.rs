@@ -1,6 +1,6 @@
 //! Evening out: points push each other away along the surface.
 //!
-//! A step of all points at once: each is pushed by those within two spacings, the nearer the more, (1 − d/R)²,
+//! A step of all points at once: each is pushed by those within some spacings, the nearer the more, (1 − d/R)²,
 //! and moves along the surface. Spacings follow the density, which the points have had from the start: no
 //! point goes far, so that they keep it.
 
@@ -11,12 +11,12 @@ use glam::DVec3;
 use super::surface::Surface;
 use super::{Mesh, MeshError, SurfacePoint, with_room};
 
-/// How far a point is pushed, in spacings √(1/density).
-const REACH: f64 = 2.0;
-
-/// The part of a spacing by which a push of 1 moves a point. Of 0.1 to 0.8 on a sphere, a knot and a square
-/// this leaves the greatest least distance after 10 steps and after 30.
-const GAIN: f64 = 0.3;
+/// How far a point is pushed, in spacings √(1/density); and the part of a spacing by which a push of 1 moves
+/// a point. Nearest distances of 2,000 points on a sphere after 10 steps, in parts of the hexagonal lattice's,
+/// least and mean: .702, .830 at (2, 0.3); .745, .851 at (2, 0.6); .717, .850 at (2.5, 0.4); .738, .868 at
+/// (1.6, 0.6), and .790, .899 after 30; with a gain of 1 points never come to rest (.459, .746).
+const REACH: f64 = 1.6;
+const GAIN: f64 = 0.6;
 
 /// The most that a point moves in a step, in spacings.
 const LONGEST: f64 = 0.4;

@@ -52,8 +52,8 @@ struct Displacer<'w, 'a, I> {
     /// Where importance is read.
     low: DVec2,
     high: DVec2,
-    /// The seam that points may be across, if there is one.
-    seam: Option<Seam>,
+    /// Whether points may be across a seam.
+    wraps: bool,
 }
 
 impl<S: Scalar> Chunk<S> {
@@ -76,19 +76,17 @@ impl<S: Scalar> Chunk<S> {
         let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
-        let seam = if batch.inside { None } else { Seam::of(sampling.placement()) };
-        let mover = Displacer { sampling, displacements, batch, ancestry, low, high, seam };
+        let wraps = !batch.inside && sampling.placement().is_seamless();
+        let mover = Displacer { sampling, displacements, batch, ancestry, low, high, wraps };
         if batch.inside {
             self.read_values(sampling);
+        } else if wraps {
+            self.read_values_across(sampling);
         } else {
             let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
             let len = self.len.min(CHUNK);
             for i in 0..len {
                 [x[i], y[i]] = mover.nearest(self.x[i], self.y[i]).to_array();
-            }
-            if let Some(seam) = &seam {
-                let places = (&mut x[..len], &mut y[..len]);
-                seam.wrapped_places(places, &self.x[..len], &self.y[..len]);
             }
             let (x, y) = (&x[..len], &y[..len]);
             sampling.importance().values(DVec2::ZERO, x, y, &mut self.values[..len]);
@@ -99,7 +97,7 @@ impl<S: Scalar> Chunk<S> {
             self.mark_accepted(sampling, batch)?;
         }
         // Across a seam, what is far from the clip may be near.
-        if !batch.inside && seam.is_none() {
+        if !batch.inside && !wraps {
             self.reject_far(walk);
         }
         match sure && batch.inside {
@@ -113,6 +111,17 @@ impl<S: Scalar> Chunk<S> {
             self.mark_inside::<I, P>(walk);
         }
         Ok(next)
+    }
+
+    /// The importance at each candidate, wrapped.
+    #[cold]
+    #[inline(never)]
+    fn read_values_across<I: Importance>(&mut self, sampling: &Sampling<'_, I>) {
+        let seam = Seam::around(sampling.placement().domain());
+        let columns = self.x[..self.len].iter().zip(&self.y);
+        for (value, (x, y)) in self.values.iter_mut().zip(columns) {
+            *value = sampling.importance().value(seam.place(*x, *y));
+        }
     }
 
     /// Unmarks those of the marked candidates that are too far from the clip to be moved into it.
@@ -184,7 +193,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, importance) = (sampling.placement(), sampling.importance());
         let centre = placement.domain().min() + placement.centre(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
-        self.seam.is_none()
+        !self.wraps
             && importance.longest_constraint() <= 0.0
             && importance.lower_bound(&Disc { centre, radius }) > 0.0
     }
@@ -219,18 +228,19 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let len = run.len().min(RUN);
         let (mut phases, mut details) = ([1.0f64; RUN], [0.0f64; RUN]);
         let (mut deep, mut other) = ([0u8; RUN], [0u8; RUN]);
-        let (mut at_x, mut at_y, mut local) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
-        for k in 0..len {
-            let i = run.start + k;
-            let at = self.nearest(chunk.x[i], chunk.y[i]);
-            (at_x[k], at_y[k], local[k]) = (at.x, at.y, chunk.values[i]);
-        }
-        if let Some(seam) = &self.seam {
-            let places = (&mut at_x[..len], &mut at_y[..len]);
-            seam.wrapped_places(places, &chunk.x[run.clone()], &chunk.y[run.clone()]);
-        }
+        let mut local = [0.0; RUN];
+        local[..len].copy_from_slice(&chunk.values[run.start..run.start + len]);
         let (local, unread) = (&mut local[..len], &mut details[..len]);
-        sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
+        if self.wraps {
+            self.surroundings_across(&chunk.x[run.clone()], &chunk.y[run.clone()], local, unread);
+        } else {
+            let (mut at_x, mut at_y) = ([0.0; RUN], [0.0; RUN]);
+            for k in 0..len {
+                let i = run.start + k;
+                [at_x[k], at_y[k]] = self.nearest(chunk.x[i], chunk.y[i]).to_array();
+            }
+            sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
+        }
         if !self.displacements.has_rough() {
             details = [0.0; RUN];
         }
@@ -278,8 +288,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
             for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
                 (*x, *y) = (*x + *dx, *y + *dy);
             }
-        } else if let Some(seam) = &self.seam {
-            self.constrain_across(seam, chunk, run, &dx, &dy);
+        } else if self.wraps {
+            self.constrain_across(chunk, run, &dx, &dy);
         } else {
             self.constrain(chunk, run, &dx, &dy);
         }
@@ -329,11 +339,31 @@ impl<I: Importance> Displacer<'_, '_, I> {
         }
     }
 
-    /// The same across a seam, a point at a time.
+    /// The surroundings of positions, wrapped.
+    #[cold]
+    #[inline(never)]
+    fn surroundings_across<S: Scalar>(
+        &self,
+        x: &[S],
+        y: &[S],
+        local: &mut [f64],
+        detail: &mut [f64],
+    ) {
+        let seam = Seam::around(self.sampling.placement().domain());
+        let (mut at_x, mut at_y) = ([0.0; RUN], [0.0; RUN]);
+        let places = at_x.iter_mut().zip(&mut at_y);
+        for ((at_x, at_y), (x, y)) in places.zip(x.iter().zip(y)) {
+            [*at_x, *at_y] = seam.place(*x, *y).to_array();
+        }
+        let len = x.len().min(RUN);
+        self.sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, detail);
+    }
+
+    /// Moves points across a seam by steps, a point at a time.
+    #[cold]
     #[inline(never)]
     fn constrain_across<S: Scalar>(
         &self,
-        seam: &Seam,
         chunk: &mut Chunk<S>,
         run: Range<usize>,
         dx: &[S; RUN],
@@ -342,6 +372,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (importance, scale) = (self.sampling.importance(), self.sampling.scale());
         let placement = self.sampling.placement();
         let (corner, block) = (placement.domain().min(), self.batch.block(placement));
+        let seam = Seam::around(placement.domain());
         for (i, (dx, dy)) in run.zip(dx.iter().zip(dy)) {
             let (x, y) = (chunk.x[i], chunk.y[i]);
             (chunk.x[i], chunk.y[i]) = (x + *dx, y + *dy);
@@ -380,9 +411,9 @@ impl<I: Importance> Displacer<'_, '_, I> {
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
-        let at = match &self.seam {
-            Some(seam) => seam.place(chunk.x[i], chunk.y[i]),
-            None => self.nearest(chunk.x[i], chunk.y[i]),
+        let at = match self.wraps {
+            true => Seam::around(placement.domain()).place(chunk.x[i], chunk.y[i]),
+            false => self.nearest(chunk.x[i], chunk.y[i]),
         };
         let (phase, detail) = self.phase(at, value, numbering.reciprocal(usize::from(level) - 1));
         let reading = self.displacements.reading(phase, detail);

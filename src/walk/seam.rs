@@ -23,7 +23,12 @@ impl Seam {
     /// The placement's, if it is seamless.
     #[inline(always)]
     pub(crate) fn of(placement: &Placement<'_>) -> Option<Self> {
-        placement.is_seamless().then(|| Self { domain: placement.domain() })
+        placement.is_seamless().then(|| Self::around(placement.domain()))
+    }
+
+    /// A seamless domain's.
+    pub(crate) fn around(domain: Domain) -> Self {
+        Self { domain }
     }
 
     /// The images of a disc that touch the domain: at least one of a disc whose center is less than a
@@ -83,20 +88,6 @@ impl Seam {
     /// The same for a position relative to the domain's least corner.
     pub(crate) fn place<S: Scalar>(&self, x: S, y: S) -> DVec2 {
         self.wrapped(self.domain.min() + DVec2::new(x.to_f64(), y.to_f64()))
-    }
-
-    /// The same for many positions.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn wrapped_places<S: Scalar>(
-        &self,
-        (to_x, to_y): (&mut [f64], &mut [f64]),
-        x: &[S],
-        y: &[S],
-    ) {
-        for ((to_x, to_y), (x, y)) in to_x.iter_mut().zip(to_y).zip(x.iter().zip(y)) {
-            [*to_x, *to_y] = self.place(*x, *y).to_array();
-        }
     }
 
     /// Whether two places, less than a side outside, are on different sides of the seam.
