@@ -32,7 +32,7 @@ pub(super) fn weights(densities: [f64; 3], along: f64) -> [f64; 3] {
             along = (share - first) / second;
             (a, c) = (c, m);
         }
-        if !(along < 1.0) {
+        if along >= 1.0 || along.is_nan() {
             along = 1.0 - f64::EPSILON;
         }
         if a.1 + b.1 + c.1 <= 0.0 {

@@ -1,5 +1,6 @@
 //! The density over a triangle: the same everywhere, a number a vertex, or a texture.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use glam::{DVec2, Vec2};
@@ -17,7 +18,7 @@ pub(super) enum Density {
     /// By vertex.
     Vertices(Vec<f32>),
     /// The texture, and by triangle the texture coordinates of its corners.
-    Texture(ImageMap, Vec<[Vec2; 3]>),
+    Texture(Box<ImageMap>, Vec<[Vec2; 3]>),
 }
 
 impl Density {

@@ -21,6 +21,7 @@ mod surface;
 
 pub use error::MeshError;
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -159,7 +160,7 @@ impl Mesh {
         }
         let mut own = with_room(found)?;
         own.extend_from_slice(coordinates);
-        self.density = Density::Texture(texture, own);
+        self.density = Density::Texture(Box::new(texture), own);
         self.sum_shares()?;
         Ok(self)
     }

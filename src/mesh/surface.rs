@@ -82,9 +82,9 @@ impl<'m> Surface<'m> {
             });
             let mut part = 1.0;
             let mut through = None;
-            for k in 0..3 {
-                if point.weights[k] + part * rates[k] < 0.0 {
-                    part = (point.weights[k] / -rates[k]).clamp(0.0, 1.0);
+            for (k, (weight, rate)) in point.weights.iter().zip(rates).enumerate() {
+                if weight + part * rate < 0.0 {
+                    part = (weight / -rate).clamp(0.0, 1.0);
                     through = Some(k);
                 }
             }
