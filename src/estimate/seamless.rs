@@ -1,6 +1,6 @@
 //! A level of the tiling without borders: a square torus, evened out along the axes.
 //!
-//! The tiling of a level is a square-triangle tiling whose vertices are tile centres. One that repeats is the
+//! The tiling of a level is a square-triangle tiling whose vertices are tile centers. One that repeats is the
 //! snub-square tiling ([`snub_square`](crate::tiling::snub_square)), four vertices to a square cell. Subdivided it
 //! is a [`seamless`](crate::Placement::seamless) placement; here it is not, for deeper levels come in coarser
 //! numbers.
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn the_cell_is_the_snub_square_tilings() {
-        // Every vertex has five neighbours at the distance of an edge, 1/(2 cos 15°) of the side, at the
+        // Every vertex has five neighbors at the distance of an edge, 1/(2 cos 15°) of the side, at the
         // angles of 3².4.3.4.
         let edge = 1.0 / libm::sqrt(2.0 + SQRT_3);
         for vertex in VERTICES {

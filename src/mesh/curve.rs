@@ -1,4 +1,4 @@
-//! From a number in [0, 1) to a place in a triangle, neighbours to neighbours, and equal shares of the number
+//! From a number in [0, 1) to a place in a triangle, neighbors to neighbors, and equal shares of the number
 //! to equal shares of the density.
 //!
 //! Sierpiński's curve: from corner a to corner b the triangle is halved from c to the middle m of the side

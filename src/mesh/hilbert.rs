@@ -1,4 +1,4 @@
-//! The order of triangles: along a Hilbert curve through space, so that neighbours on the curve are near.
+//! The order of triangles: along a Hilbert curve through space, so that neighbors on the curve are near.
 
 use glam::DVec3;
 
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_next_cell_on_the_curve_is_a_neighbour() {
+    fn the_next_cell_on_the_curve_is_a_neighbor() {
         // The first 3 bits of each coordinate: 512 cells.
         let mut cells: std::vec::Vec<_> = (0..512u32)
             .map(|i| {

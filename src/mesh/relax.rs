@@ -26,7 +26,7 @@ const LONGEST: f64 = 0.4;
 const CONTRAST: f64 = 4.0;
 
 impl Mesh {
-    /// Evens points of this mesh out in `steps` steps: nearest neighbours become almost equally far apart. 10
+    /// Evens points of this mesh out in `steps` steps: nearest neighbors become almost equally far apart. 10
     /// steps do most of it, 30 the rest.
     ///
     /// Points keep to the density to within a spacing, but are no longer unbiased in its detail: where that is

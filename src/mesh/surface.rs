@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{Mesh, MeshError, SurfacePoint, with_room};
 
-/// No neighbour: a border of the mesh, or an edge of three triangles and more.
+/// No neighbor: a border of the mesh, or an edge of three triangles and more.
 const NONE: u32 = u32::MAX;
 
 /// Edges crossed on one way, at the most.

@@ -90,7 +90,7 @@ impl Torus {
         };
         let mut nearest = (f64::INFINITY, ExactPoint::default(), DVec2::ZERO);
         for place in 0..Self::roots(cells) {
-            let center = torus.home(torus.root(place).centre, 0);
+            let center = torus.home(torus.root(place).center, 0);
             let at = torus.position(center, 0);
             let distance = at.distance_squared(0.5 * size);
             if distance < nearest.0 {
@@ -115,9 +115,9 @@ impl Torus {
         let (kind, rotation, center) = snub_square::VERTICES[vertex];
         let turned = exact(center).turned_back((4 - self.quarters) % 4);
         let [x, y] = snub_square::CELL.map(exact);
-        let centre = turned.plus(x.times(column)).plus(y.times(row)).minus(self.reference);
+        let center = turned.plus(x.times(column)).plus(y.times(row)).minus(self.reference);
         let rotation = (rotation + 3 * self.quarters) % 12;
-        Node { kind, rotation, level: ROOT_LEVEL, centre, rank: place }
+        Node { kind, rotation, level: ROOT_LEVEL, center, rank: place }
     }
 
     /// Tile `i` of the frontier.
@@ -132,7 +132,7 @@ impl Torus {
             return None;
         }
         let node = self.root(place).child(tables, numbering, i % MAX_CHILDREN)?;
-        Some(Node { centre: self.home(node.centre, 1), ..node })
+        Some(Node { center: self.home(node.center, 1), ..node })
     }
 
     /// The root of a tile of the frontier, and the way from it.
@@ -204,7 +204,7 @@ mod tests {
                 let torus = Torus::new(size, [columns, rows], DVec2::new(0.3, 0.6), 1);
                 let mut seen = std::collections::HashSet::new();
                 for place in 0..Torus::roots([columns, rows]) {
-                    let ExactPoint { u, v, p, q } = torus.home(torus.root(place).centre, 0);
+                    let ExactPoint { u, v, p, q } = torus.home(torus.root(place).center, 0);
                     assert!(seen.insert([u, v, p, q]));
                 }
             }

@@ -37,11 +37,11 @@ impl Seam {
         let (low, high, size) = (self.domain.min(), self.domain.max(), self.domain.size());
         // A little more, so that rounding loses none.
         let radius = region.radius + 1e-9 * size.max_element();
-        let Disc { centre, radius: own } = *region;
+        let Disc { center, radius: own } = *region;
         let shifts = (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(x.into(), y.into())));
-        shifts.map(move |shift| centre + shift * size).filter_map(move |centre| {
-            let touches = centre.clamp(low, high).distance_squared(centre) <= radius * radius;
-            touches.then_some(Disc { centre, radius: own })
+        shifts.map(move |shift| center + shift * size).filter_map(move |center| {
+            let touches = center.clamp(low, high).distance_squared(center) <= radius * radius;
+            touches.then_some(Disc { center, radius: own })
         })
     }
 
@@ -67,7 +67,7 @@ impl Seam {
 
     /// Whether the disc lies in the domain.
     pub(crate) fn is_clear_of(&self, region: &Disc) -> bool {
-        let (low, high) = (region.centre - region.radius, region.centre + region.radius);
+        let (low, high) = (region.center - region.radius, region.center + region.radius);
         low.cmpge(self.domain.min()).all() && high.cmplt(self.domain.max()).all()
     }
 

@@ -16,7 +16,7 @@ fn sphere(subdivisions: usize) -> Triangles {
         corners.extend([Vec3::new(0.0, a, b), Vec3::new(a, b, 0.0), Vec3::new(b, 0.0, a)]);
     }
     let mut corners: Vec<Vec3> = corners.into_iter().map(Vec3::normalize).collect();
-    // Faces: triples of nearest neighbours, turned outwards.
+    // Faces: triples of nearest neighbors, turned outwards.
     let edge = 2.0 / (t * t + 1.0).sqrt() * 1.01;
     let near = |a: usize, b: usize, c: &[Vec3]| c[a].distance(c[b]) < edge;
     let mut faces = Vec::new();

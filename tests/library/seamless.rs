@@ -63,9 +63,9 @@ fn all_tiles(quarters: u8, levels: usize) -> Vec<(u64, DVec2)> {
     let rules = Tables::built_in().rules();
     let mut tiles: Vec<(u64, Tile)> = (0..)
         .zip(snub_square::VERTICES)
-        .map(|(rank, (kind, rotation, centre))| {
-            let centre = centre.checked_rotate(3 * quarters).unwrap();
-            (rank, Tile { kind, rotation: (rotation + 3 * quarters) % 12, centre })
+        .map(|(rank, (kind, rotation, center))| {
+            let center = center.checked_rotate(3 * quarters).unwrap();
+            (rank, Tile { kind, rotation: (rotation + 3 * quarters) % 12, center })
         })
         .collect();
     let mut period = snub_square::CELL;
@@ -93,7 +93,7 @@ fn all_tiles(quarters: u8, levels: usize) -> Vec<(u64, DVec2)> {
     tiles.sort_by_key(|(rank, _)| *rank);
     assert!(tiles.iter().map(|(rank, _)| *rank).eq(0..count));
     assert!(tiles.iter().any(|(_, tile)| tile.kind == TileType::A));
-    tiles.iter().map(|(rank, tile)| (*rank, in_sides(tile.centre))).collect()
+    tiles.iter().map(|(rank, tile)| (*rank, in_sides(tile.center))).collect()
 }
 
 #[test]
@@ -324,7 +324,7 @@ fn a_bound_that_is_too_low_across_the_seam_is_an_error() {
     // Honest about discs in the domain's left half only.
     let broken = Function::new(
         |at: DVec2| if at.x > 0.9 { 2.0 } else { 1.0 },
-        |region: &twelvefold::Disc| if region.centre.x < 0.9 - region.radius { 1.0 } else { 2.0 },
+        |region: &twelvefold::Disc| if region.center.x < 0.9 - region.radius { 1.0 } else { 2.0 },
     );
     let placement = Placement::seamless(Domain::UNIT, 2).unwrap();
     let sampling = Sampling::new(&placement, &broken, Amount::Density(3000.0)).unwrap();
@@ -377,7 +377,7 @@ fn the_deepest_level_is_reached() {
     let spot = Function::new(
         |at: DVec2| f64::from(at.distance(DVec2::new(0.0, 0.5)) < 2e-6),
         |region: &twelvefold::Disc| {
-            f64::from(region.centre.distance(DVec2::new(0.0, 0.5)) < 2e-6 + region.radius)
+            f64::from(region.center.distance(DVec2::new(0.0, 0.5)) < 2e-6 + region.radius)
         },
     );
     let limits = Limits { points: u64::MAX, tiles: 20_000 };
