@@ -53,6 +53,13 @@ pub enum SamplingError {
         /// The limit.
         limit: u64,
     },
+    /// A seamless domain's sides are not as k to l, whole numbers up to 16.
+    Ratio {
+        /// The width asked for.
+        width: f64,
+        /// The height.
+        height: f64,
+    },
     /// The placement's tables have no displacements.
     NoDisplacements,
     /// Weights were asked for of relaxed points, which have none: estimates from them would be biased.
@@ -101,6 +108,10 @@ impl fmt::Display for SamplingError {
                 at.x, at.y
             ),
             Self::TilesLimit { limit } => write!(f, "the walk visited its limit of {limit} tiles"),
+            Self::Ratio { width, height } => write!(
+                f,
+                "a seamless domain's sides are as whole numbers up to 16, which {width} to {height} are not"
+            ),
             Self::NoDisplacements => f.write_str("the tables have no displacements, which relaxed points need"),
             Self::Relaxed => f.write_str(
                 "relaxed points have no unbiased weights: use points that are not relaxed for estimates",

@@ -30,6 +30,10 @@ pub const FIRST_RELAXED_LEVEL: u8 = crate::placement::FIRST_RELAXED_LEVEL;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Export {
+    /// Whether the domain has no border ([`Placement::seamless`]). Then the points are not those that the
+    /// rules above give: ranks have other counts, and positions and importance wrap. A sampler that does not
+    /// know of it must refuse.
+    pub seamless: bool,
     /// The point that exact coordinates are relative to, in units.
     pub origin: DVec2,
     /// For each level: the vector of half an edge along the tiling's x axis, in units.
@@ -89,6 +93,7 @@ impl Export {
             Some(FrontierTile { kind, rotation, center: [u, v, p, q], rank: node.rank })
         };
         Self {
+            seamless: placement.is_seamless(),
             origin: placement.origin(),
             half_edges: core::array::from_fn(|i| placement.half_edge(level(i))),
             reach: core::array::from_fn(|i| placement.reach(level(i), usize::MAX)),

@@ -74,6 +74,7 @@ pub mod estimate;
 pub mod export;
 pub mod importance;
 pub mod light;
+pub mod mesh;
 mod placement;
 mod position;
 #[doc(hidden)]

@@ -25,6 +25,8 @@ pub enum GpuError {
         /// The diagonal.
         diagonal: f64,
     },
+    /// A placement without a border ([`twelvefold::Placement::seamless`]): the shaders know borders only.
+    Seamless,
     /// Tables of a smaller depth than 3.
     Depth {
         /// The depth.
@@ -51,6 +53,7 @@ impl fmt::Display for GpuError {
                 write!(f, "an importance of {width} by {height} texels: up to 8192 a side and 2^25")
             }
             Self::Capacity { points } => write!(f, "room for {points} points: 1 to 2^24"),
+            Self::Seamless => f.write_str("seamless placements have no sampler on the GPU"),
             Self::Room => f.write_str("room for candidates or opened tiles that no buffer has"),
             Self::Domain { diagonal } => {
                 write!(

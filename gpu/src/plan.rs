@@ -208,6 +208,9 @@ impl Plan {
         }
         let caller = ToCaller::of(&domain).map_err(|_| GpuError::Domain { diagonal })?;
         let export = Export::of(placement);
+        if export.seamless {
+            return Err(GpuError::Seamless);
+        }
         let relaxed = points_are == Points::Relaxed;
         let longest = match (relaxed, placement.tables().to_relaxation()) {
             (true, Some(relaxation)) => relaxation.smooth.longest(1.0, DELTA.into()),
@@ -479,6 +482,14 @@ mod tests {
             }
             assert!(plan.bytes(Binding::Placed) <= 65_536);
         }
+    }
+
+    #[test]
+    fn domains_without_a_border_are_refused() {
+        let placement = Placement::seamless(twelvefold::Domain::UNIT, 1).unwrap();
+        let (capacity, order) = (Capacity::points(100), Order::Ordered);
+        let plan = Plan::new(&placement, (4, 4), capacity, order, Points::Fixed, 1);
+        assert_eq!(plan.err(), Some(GpuError::Seamless));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use numpy::{
     PyUntypedArrayMethods as _,
 };
 use pyo3::prelude::*;
-use twelvefold::{Domain, ImageMap, InvalidPixels};
+use twelvefold::{Domain, ImageMap, InvalidPixels, Pixels};
 
 use crate::error;
 
@@ -137,7 +137,9 @@ pub(crate) fn importance(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Im
 
 /// Importance as the library's map, stretched over a domain.
 pub(crate) fn map((width, height, pixels): Image, domain: Domain) -> PyResult<ImageMap> {
-    let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).map_err(error::map)?;
+    let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
+        .and_then(ImageMap::new)
+        .map_err(error::map)?;
     // The same numbers, bit for bit, where this is what it covers already.
     Ok(if map.domain() == domain { map } else { map.over(domain) })
 }

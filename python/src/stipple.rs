@@ -4,7 +4,9 @@ use glam::DVec2;
 use pyo3::prelude::*;
 use twelvefold::estimate::exactly;
 use twelvefold::refine::Refiner;
-use twelvefold::{Amount, ImageMap, InvalidPixels, Limits, Placement, Sampling, StippleMap};
+use twelvefold::{
+    Amount, ImageMap, InvalidPixels, Limits, Pixels, Placement, Sampling, StippleMap,
+};
 
 use crate::arrays::Image;
 use crate::work::{self, Stop};
@@ -58,7 +60,9 @@ fn copied((width, height, pixels): &Image) -> PyResult<Image> {
 
 /// Exactly n dots, in progressive order.
 fn exact_dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
-    let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).map_err(error::map)?;
+    let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
+        .and_then(ImageMap::new)
+        .map_err(error::map)?;
     let placement = Placement::new(map.domain(), seed);
     let made = exactly(&placement, &map, n, Limits::default()).map_err(error::exact)?;
     Ok(made.iter().map(|point| point.position).collect())
@@ -67,8 +71,9 @@ fn exact_dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<V
 /// About n dots, relaxed, in the order of the walk.
 fn dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
     let n = n as f64;
-    let map =
-        StippleMap::new(width, height, pixels, InvalidPixels::Reject, n).map_err(error::map)?;
+    let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
+        .and_then(|pixels| StippleMap::new(pixels, n))
+        .map_err(error::map)?;
     let placement = Placement::new(map.domain(), seed);
     let sampling = Sampling::new(&placement, &map, Amount::Points(n)).map_err(error::sampling)?;
     let sampling = sampling.relaxed().map_err(error::sampling)?;

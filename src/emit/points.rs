@@ -94,10 +94,11 @@ impl<'a, I: Importance, P: Position> Points<'a, I, P> {
     #[inline(always)]
     fn sample(&self, i: usize) -> Sample<P> {
         let batch = self.walk.batch();
-        let block = batch.block(self.sampling.placement());
+        let placement = self.sampling.placement();
+        let block = batch.block(placement);
         Sample {
             position: self.to_world.place(self.chunk.x[i], self.chunk.y[i]),
-            rank: batch.rank(block, self.chunk.entry(i)),
+            rank: batch.rank(placement.numbering(), block, self.chunk.entry(i)),
         }
     }
 }

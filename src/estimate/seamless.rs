@@ -1,8 +1,9 @@
 //! A level of the tiling without borders: a square torus, evened out along the axes.
 //!
-//! The tiling of a level is a square-triangle tiling whose vertices are tile centers. Periodic ones exist,
-//! too: the snub-square tiling 3².4.3.4 has only vertices of the types c and d, four to a square cell.
-//! (Subdividing it keeps the periods, but adds no merit here: deeper levels come in coarser numbers.)
+//! The tiling of a level is a square-triangle tiling whose vertices are tile centers. One that repeats is the
+//! snub-square tiling ([`snub_square`](crate::tiling::snub_square)), four vertices to a square cell. Subdivided it
+//! is a [`seamless`](crate::Placement::seamless) placement; here it is not, for deeper levels come in coarser
+//! numbers.
 //! n/4 of its cells make a torus:
 //!
 //! ```text
@@ -26,7 +27,8 @@ use crate::random::SplitMix64;
 use crate::sampling::Limits;
 use crate::tiling::numbers::SQRT_3;
 
-/// Exactly n points of the unit torus, evenly spread in all directions and along the axes.
+/// Exactly n points of the unit torus, evenly spread in all directions and along the axes: for warps. Points
+/// of a density of their own on a torus are those of [`Placement::seamless`](crate::Placement::seamless).
 ///
 /// Every seed gives the same set, shifted at random and turned or mirrored: each point alone is
 /// uniform, so that estimates with weights 1/n are unbiased; and there is no border, so that
@@ -250,6 +252,19 @@ mod tests {
             let squares = (0..5).filter(|k| (gap(*k) - 90.0).abs() < 1e-9).count();
             let triangles = (0..5).filter(|k| (gap(*k) - 60.0).abs() < 1e-9).count();
             assert_eq!((squares, triangles), (2, 3));
+        }
+    }
+
+    #[test]
+    fn the_vertices_are_those_of_the_tiling() {
+        use crate::tiling::snub_square;
+        let exact = |z: crate::tiling::Cyclotomic| DVec2::from_array(z.to_f64());
+        let [x, y] = snub_square::CELL.map(exact);
+        for (vertex, (.., center)) in VERTICES.iter().zip(snub_square::VERTICES) {
+            let center = exact(center);
+            let in_sides = DVec2::new(center.dot(x), center.dot(y)) / x.length_squared();
+            let away = *vertex - in_sides;
+            assert!((away - away.round()).length() < 1e-12, "{vertex} {in_sides}");
         }
     }
 

@@ -8,7 +8,6 @@ use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::tables::DisplacementTable;
-use crate::tiling::{MAX_LEVEL, TileCounts};
 
 pub(crate) use clip::{Clip, ToWorld};
 pub(crate) use scale::RankScale;
@@ -264,8 +263,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
             return Err(SamplingError::InvalidBound { near: region.center, bound });
         }
         let limit = self.scale.limit(bound);
-        let deepest = TileCounts::HEXAGON.all()[MAX_LEVEL];
-        if limit > deepest {
+        if limit > self.placement.deepest_count() {
             return Err(SamplingError::TooDense { near: region.center });
         }
         Ok(limit)

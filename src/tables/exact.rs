@@ -47,6 +47,11 @@ impl ExactPoint {
         Self { u: self.u + other.u, v: self.v + other.v, p: self.p + other.p, q: self.q + other.q }
     }
 
+    /// An integer multiple.
+    pub(crate) fn times(self, n: i32) -> Self {
+        Self { u: n * self.u, v: n * self.v, p: n * self.p, q: n * self.q }
+    }
+
     /// The difference.
     pub(crate) fn minus(self, other: Self) -> Self {
         self.plus(Self { u: -other.u, v: -other.v, p: -other.p, q: -other.q })

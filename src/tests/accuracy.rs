@@ -9,7 +9,7 @@ use std::vec::Vec;
 
 use glam::DVec2;
 
-use crate::placement::Placement;
+use crate::placement::{FRONTIER_LEVEL, Placement};
 use crate::position::Scalar;
 use crate::random::SplitMix64;
 use crate::tables::ExactPoint;
@@ -67,9 +67,11 @@ fn exact(placement: &Placement<'_>, level: u8, at: ExactPoint) -> [Wide; 2] {
     let whole = |n: i32| Wide(n.into(), 0.0);
     let x = whole(at.u).plus(Wide::sqrt_3().times(whole(at.v)));
     let y = whole(at.p).plus(Wide::sqrt_3().times(whole(at.q)));
-    let h = placement.half_edge(0);
+    // Where the placement's own scale is set: at the root.
+    let root = if placement.is_seamless() { FRONTIER_LEVEL - 1 } else { 0 };
+    let h = placement.half_edge(root);
     let (mut hx, mut hy) = (Wide(h.x, 0.0), Wide(h.y, 0.0));
-    for _ in 0..level {
+    for _ in root..level {
         (hx, hy) = (hx.times(inverse_lambda()), hy.times(inverse_lambda()));
     }
     let origin = placement.origin();
@@ -82,10 +84,10 @@ fn exact(placement: &Placement<'_>, level: u8, at: ExactPoint) -> [Wide; 2] {
 /// A node of `level` below a random frontier tile.
 fn random_node(placement: &Placement<'_>, random: &mut SplitMix64, level: u8) -> Node {
     let frontier: Vec<_> = placement.frontier().collect();
-    let mut node = *frontier[random.next_u64() as usize % frontier.len()];
+    let mut node = frontier[random.next_u64() as usize % frontier.len()];
     while node.level < level {
         let digit = random.next_u64() as usize % 14;
-        if let Some(child) = node.child(placement.tables(), digit) {
+        if let Some(child) = node.child(placement.tables(), placement.numbering(), digit) {
             node = child;
         }
     }
@@ -100,7 +102,11 @@ fn largest_error<S: Scalar>(epsilon: f64) -> f64 {
     for seed in 0..60u64 {
         let size = [DVec2::ONE, DVec2::new(1e-6, 0.3e-6), DVec2::new(7e8, 1e9)][seed as usize % 3];
         let domain = Domain::new(DVec2::ZERO, size).unwrap();
-        let placement = Placement::new(domain, seed);
+        let placement = match seed % 4 {
+            // Of these sizes, one is square.
+            3 if size == DVec2::ONE => Placement::seamless(domain, seed).unwrap(),
+            _ => Placement::new(domain, seed),
+        };
         let ulp = epsilon * domain.diagonal().log2().floor().exp2();
         for level in 4..=MAX_LEVEL as u8 - depth {
             for _ in 0..8 {

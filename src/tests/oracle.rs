@@ -80,7 +80,7 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
 fn starts<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<Found> {
     let placement = sampling.placement();
     let rules = placement.tables().rules();
-    let known = *placement.frontier().next().unwrap();
+    let known = placement.frontier().next().unwrap();
     let level = usize::from(FRONTIER_LEVEL);
     let path_to = |rank| {
         let code = FCode::from_rank(TileType::A, level, rank).unwrap();

@@ -88,18 +88,53 @@ impl TileCounts {
     }
 }
 
-/// 1/N_m under the root `a`.
-pub(crate) static RECIPROCALS: [f64; MAX_LEVEL + 1] = {
-    let mut reciprocals = [1.0; MAX_LEVEL + 1];
-    let mut level = 0;
-    while level <= MAX_LEVEL {
-        if let Ok(tiles) = TileCounts::HEXAGON.at(level) {
-            reciprocals[level] = 1.0 / tiles as f64;
+/// How the tiles of an endless sequence are numbered: the counts of which ranks are made, and 1/N_m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Numbering {
+    counts: TileCounts,
+    reciprocals: [f64; MAX_LEVEL + 1],
+}
+
+impl Numbering {
+    /// Under one root `a`.
+    pub(crate) const HEXAGON: Self = Self::of(TileCounts::HEXAGON);
+
+    /// Under several roots, all pentagons of this level, whose ranks interleave: rank · roots + the
+    /// root's place among them. `None` where the last level's ranks leave 2⁶¹, or without roots.
+    pub(crate) fn of_pentagons(roots: u64, level: u8) -> Option<Self> {
+        let mut counts = [0; MAX_LEVEL + 2];
+        let pentagon = TileCounts::PENTAGON.0;
+        for (count, tiles) in counts.iter_mut().skip(level.into()).zip(pentagon) {
+            *count = tiles.checked_mul(roots).filter(|count| *count < 1 << 61)?;
         }
-        level += 1;
+        (roots > 0).then_some(Self::of(TileCounts(counts)))
     }
-    reciprocals
-};
+
+    const fn of(counts: TileCounts) -> Self {
+        let mut reciprocals = [1.0; MAX_LEVEL + 1];
+        let mut level = 0;
+        while level <= MAX_LEVEL {
+            // Above several roots there are no tiles.
+            if counts.0[level + 1] > 0 {
+                reciprocals[level] = 1.0 / counts.0[level + 1] as f64;
+            }
+            level += 1;
+        }
+        Self { counts, reciprocals }
+    }
+
+    /// N₀ … N₁₆.
+    #[inline(always)]
+    pub(crate) fn counts(&self) -> &TileCounts {
+        &self.counts
+    }
+
+    /// 1/N_m of a level that exists; 1 if there are no tiles, 0 past the last level.
+    #[inline(always)]
+    pub(crate) fn reciprocal(&self, level: usize) -> f64 {
+        self.reciprocals.get(level).copied().unwrap_or(0.0)
+    }
+}
 
 /// Why a rank could not be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,6 +15,7 @@ pub mod fcode;
 pub mod numbers;
 pub mod rank;
 pub mod rules;
+pub mod snub_square;
 pub mod tile;
 
 pub use children::{Child, MAX_CHILDREN};

@@ -1,7 +1,8 @@
 //! A tile on the way: exact coordinates relative to the placement, and its rank.
 
 use crate::tables::{ExactPoint, Tables};
-use crate::tiling::{TileCounts, TileType};
+use crate::tiling::TileType;
+use crate::tiling::counts::Numbering;
 
 /// A tile of the walk.
 #[derive(Clone, Copy, Debug)]
@@ -25,14 +26,19 @@ impl Node {
 
     /// The rank of a descendant from its coefficients (A, B): rank + A·N_m − B·N_{m−1}, m the node's level.
     #[inline(always)]
-    pub(crate) fn rank_of(&self, (a, b): (u16, u16)) -> u64 {
-        let (tiles, before) = TileCounts::HEXAGON.pair(self.level);
+    pub(crate) fn rank_of(&self, numbering: &Numbering, (a, b): (u16, u16)) -> u64 {
+        let (tiles, before) = numbering.counts().pair(self.level);
         self.rank + u64::from(a) * tiles - u64::from(b) * before
     }
 
     /// The child with this digit, or `None` if there is none.
     #[inline(always)]
-    pub(crate) fn child(&self, tables: &Tables<'_>, digit: usize) -> Option<Self> {
+    pub(crate) fn child(
+        &self,
+        tables: &Tables<'_>,
+        numbering: &Numbering,
+        digit: usize,
+    ) -> Option<Self> {
         let (kind, turn) = *tables.child_kinds(self.kind).get(digit)?;
         let turned = self.rotation + turn;
         let rotation = if turned < 12 { turned } else { turned - 12 };
@@ -46,7 +52,7 @@ impl Node {
             rotation,
             level: self.level + 1,
             center: self.center.finer().plus(offset),
-            rank: self.rank_of(block.rank_coefficients(digit)),
+            rank: self.rank_of(numbering, block.rank_coefficients(digit)),
         })
     }
 }

@@ -1,8 +1,9 @@
 //! Mode: what a relaxed point must know of its ancestors.
 
 use crate::bake::class::{Classes, MAX_GENERATIONS, class_count};
+use crate::placement::Placement;
 use crate::tables::Tables;
-use crate::tiling::{FCode, TileType};
+use crate::tiling::TileType;
 use crate::tree::node::Node;
 
 /// A tile's classes, and how its parent and its grandparent are turned.
@@ -18,11 +19,15 @@ impl Ancestry {
     pub(crate) const NONE: Self = Self { classes: Classes::root(TileType::A), ancestors: [0; 2] };
 
     /// The ancestors of a frontier tile follow from its rank.
-    pub(crate) fn frontier(tables: &Tables<'_>, node: &Node) -> Self {
-        let (mut kind, mut rotation, mut ancestors) = (TileType::A, 0, [0; 2]);
+    pub(crate) fn frontier(placement: &Placement<'_>, node: &Node) -> Self {
+        let tables = placement.tables();
+        let (root, code) = placement.way_to(node);
+        let (mut kind, mut rotation) = (root.kind, root.rotation);
+        // What a root has for parents it has made up; no point reads it but the first relaxed ones.
+        let mut ancestors = [rotation; 2];
         let mut classes = Classes::root(kind);
         // The frontier's levels and ranks exist.
-        if let Ok(code) = FCode::from_rank(TileType::A, node.level.into(), node.rank) {
+        if let Ok(code) = code {
             for digit in code.oldest_first() {
                 let (child, turn) = tables.child_kinds(kind)[usize::from(digit)];
                 ancestors = [rotation, ancestors[0]];

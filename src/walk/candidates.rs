@@ -3,6 +3,7 @@
 use crate::placement::Placement;
 use crate::position::Scalar;
 use crate::tables::BlockTable;
+use crate::tiling::counts::Numbering;
 use crate::tree::frame::{Frame, Segment};
 use crate::tree::node::Node;
 
@@ -46,8 +47,8 @@ impl Candidates {
 
     /// The rank of entry `i`.
     #[inline(always)]
-    pub(crate) fn rank(&self, block: &BlockTable<'_>, i: usize) -> u64 {
-        self.node.rank_of(block.rank_coefficients(i))
+    pub(crate) fn rank(&self, numbering: &Numbering, block: &BlockTable<'_>, i: usize) -> u64 {
+        self.node.rank_of(numbering, block.rank_coefficients(i))
     }
 
     /// The block that the entries are of.

@@ -7,7 +7,7 @@
 //!           └─ chunk ─┘└─ chunk ─┘└─ chunk ─┘      at most 256 entries each, never some of both kinds
 //!
 //! load           x, y of the entries             always; candidate i is entry `first` + i
-//! mark_inside    keep = in domain and clip       only across the clip's border
+//! mark_inside    keep = in domain and clip       only across the clip's border; there, seamless: x, y wrapped
 //! pack           candidates kept to the front    from here on candidate i is `entry[i]`
 //! read_values    values = importance at x, y     only entries that are not sure
 //! mark_accepted  keep = rank < limit(value)      the same
@@ -27,7 +27,6 @@ use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::position::{Position, Scalar};
 use crate::sampling::Sampling;
-use crate::tiling::TileCounts;
 use crate::tree::frame::Segment;
 
 /// Candidates a chunk. A block of depth 2 fits, and the arrays stay in the first-level cache.
@@ -172,18 +171,24 @@ impl<S: Scalar> Chunk<S> {
         sampling.importance().values(corner, &self.x[..len], &self.y[..len], values);
     }
 
-    /// Marks what lies in the half-open domain, and in the clip's rectangle.
+    /// Marks what lies in the half-open domain, and in the clip's rectangle. In a seamless domain all
+    /// candidates do, once they are wrapped into it.
     #[inline(always)]
     pub(crate) fn mark_inside<I: Importance, P: Position<Scalar = S>>(
         &mut self,
         walk: &Context<'_, '_, I, S>,
     ) {
         let Context { sampling, clip, to_world } = *walk;
-        let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
-        let zero = S::default();
-        let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
-        for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
-            *keep = u8::from((zero <= *x) & (*x < width) & (zero <= *y) & (*y < height));
+        if sampling.placement().is_seamless() {
+            self.wrap(sampling.placement());
+            self.keep[..self.len].fill(1);
+        } else {
+            let [width, height] = sampling.placement().domain().size().to_array().map(S::from_f64);
+            let zero = S::default();
+            let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
+            for (keep, (x, y)) in self.keep.iter_mut().zip(columns) {
+                *keep = u8::from((zero <= *x) & (*x < width) & (zero <= *y) & (*y < height));
+            }
         }
         if let Some(rectangle) = clip.rectangle() {
             let columns = self.x[..self.len].iter().zip(&self.y[..self.len]);
@@ -250,13 +255,14 @@ impl<S: Scalar> Chunk<S> {
 
         let block = batch.block(sampling.placement());
         let scale = sampling.scale();
-        let (tiles, before) = TileCounts::HEXAGON.pair(batch.node.level);
+        let numbering = sampling.placement().numbering();
+        let (tiles, before) = numbering.counts().pair(batch.node.level);
         let (greatest, _) = block.rank_coefficients(batch.end - 1);
         let largest_term =
             batch.node.rank.saturating_add(u64::from(greatest).saturating_mul(tiles));
         if largest_term >= EXACT {
             for i in 0..len {
-                let rank = batch.rank(block, self.entry(i));
+                let rank = batch.rank(numbering, block, self.entry(i));
                 self.keep[i] = u8::from(scale.accepts(rank, self.values[i]));
             }
             return Ok(());

@@ -9,6 +9,7 @@ pub(crate) mod displaced;
 pub(crate) mod mode;
 mod open;
 mod relaxed;
+mod seam;
 pub(crate) mod shard;
 pub(crate) mod traverse;
 pub(crate) mod uniform;

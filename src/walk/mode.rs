@@ -7,9 +7,9 @@ use super::context::Context;
 use super::relaxed;
 use crate::error::SamplingError;
 use crate::importance::Importance;
+use crate::placement::Placement;
 use crate::position::Position;
 use crate::sampling::Sampling;
-use crate::tables::Tables;
 use crate::tree::node::Node;
 
 /// What a walk carries beside a tile: nothing for fixed centers, its [`Ancestry`] for relaxed points.
@@ -19,7 +19,7 @@ pub(crate) trait Mode: Copy + core::fmt::Debug {
     /// What an unused slot holds.
     const NONE: Self;
     /// Of a tile of the frontier.
-    fn frontier(tables: &Tables<'_>, node: &Node) -> Self;
+    fn frontier(placement: &Placement<'_>, node: &Node) -> Self;
     /// Of the child with `digit` of `parent`, whose ancestry this is.
     fn child(&self, parent: &Node, digit: usize, child: &Node) -> Self;
     /// How far, in units, points born at `level` or later may be moved.
@@ -44,7 +44,7 @@ impl Mode for Fixed {
     const NONE: Self = Self;
 
     #[inline(always)]
-    fn frontier(_: &Tables<'_>, _: &Node) -> Self {
+    fn frontier(_: &Placement<'_>, _: &Node) -> Self {
         Self
     }
 
@@ -74,8 +74,8 @@ impl Mode for Ancestry {
     const RELAXED: bool = true;
     const NONE: Self = Self::NONE;
 
-    fn frontier(tables: &Tables<'_>, node: &Node) -> Self {
-        Self::frontier(tables, node)
+    fn frontier(placement: &Placement<'_>, node: &Node) -> Self {
+        Self::frontier(placement, node)
     }
 
     #[inline(always)]

@@ -4,12 +4,12 @@ use glam::DVec2;
 
 use super::count::levels_below;
 use super::mode::Mode;
+use super::seam::Seam;
 use crate::domain::Disc;
 use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::sampling::{Clip, Sampling};
 use crate::tables::ExactPoint;
-use crate::tiling::TileCounts;
 use crate::tiling::children::MAX_CHILDREN;
 use crate::tree::frame::{Frame, Segment};
 use crate::tree::node::Node;
@@ -71,18 +71,25 @@ impl<K: Mode> OpenTile<K> {
         child_centers(sampling, node).write_columns(&mut x, &mut y);
 
         let corner = placement.domain().min();
-        let levels = levels_below(node, node_limit);
+        let levels = levels_below(placement.numbering(), node, node_limit);
         let radius = placement.reach(node.level + 1, levels.saturating_sub(1));
         // Where points are moved, these are born below the children.
         let wide = radius + K::margin(sampling, node.level + 2);
         let size = placement.domain().size();
+        // What lies inside meets no seam.
+        let seam = if node_inside { None } else { Seam::of(placement) };
         let mut digits = [0u8; MAX_CHILDREN];
         let mut touching = 0;
         for digit in 0..children {
             (digits[touching], x[touching], y[touching]) = (digit as u8, x[digit], y[digit]);
             let center = corner + DVec2::new(x[touching], y[touching]);
-            let touches = node_inside || clip.touches(&Disc { center, radius: wide });
-            if K::RELAXED {
+            let region = Disc { center, radius: wide };
+            let touches = node_inside
+                || match &seam {
+                    None => clip.touches(&region),
+                    Some(seam) => seam.touches(clip, &region),
+                };
+            if K::RELAXED && seam.is_none() {
                 // Importance is read at the nearest place of the domain, which is never farther from
                 // this one than the point from the center.
                 x[touching] = x[touching].clamp(0.0, size.x);
@@ -93,13 +100,26 @@ impl<K: Mode> OpenTile<K> {
         let mut bounds = [0.0; MAX_CHILDREN];
         let (x, y, bounds) = (&x[..touching], &y[..touching], &mut bounds[..touching]);
         importance.upper_bounds(corner, x, y, radius, bounds);
+        // Where there is one: the children that it leaves alone.
+        let mut clear = 0u16;
+        if let Some(seam) = &seam {
+            for (i, bound) in bounds.iter_mut().enumerate() {
+                let region = Disc { center: corner + DVec2::new(x[i], y[i]), radius };
+                if seam.is_clear_of(&region) {
+                    clear |= 1 << i;
+                } else {
+                    *bound = seam.upper_bound(importance, &region);
+                }
+            }
+        }
 
         self.mean_bound = bounds.iter().sum::<f64>() / bounds.len() as f64;
-        let (tiles_below, _) = TileCounts::HEXAGON.pair(node.level + 1);
+        let numbering = placement.numbering();
+        let (tiles_below, _) = numbering.counts().pair(node.level + 1);
         let scale = sampling.scale();
         for (i, bound) in bounds.iter().enumerate() {
             let digit = usize::from(digits[i]);
-            let rank = node.rank_of(block.rank_coefficients(digit));
+            let rank = node.rank_of(numbering, block.rank_coefficients(digit));
             let least = tiles_below.saturating_add(rank);
             // A sieve that costs little: rounding keeps the order, so that no child is lost, and NaN goes
             // on to be an error.
@@ -115,7 +135,11 @@ impl<K: Mode> OpenTile<K> {
                 self.pending |= bit;
                 let region_of_points = Disc { radius: wide, ..region };
                 self.inside |= if node_inside || clip.holds(&region_of_points) { bit } else { 0 };
-                self.constant |= if importance.is_constant(&region) { bit } else { 0 };
+                let constant = match &seam {
+                    Some(seam) if clear & 1 << i == 0 => seam.is_constant(importance),
+                    _ => importance.is_constant(&region),
+                };
+                self.constant |= if constant { bit } else { 0 };
             }
             (self.limits[digit], self.bounds[digit]) = (limit, *bound);
         }

@@ -12,6 +12,7 @@ use super::ancestry::{Ancestry, ClassFormula};
 use super::candidates::Candidates;
 use super::chunk::{CHUNK, Chunk};
 use super::context::Context;
+use super::seam::Seam;
 use crate::domain::Disc;
 use crate::error::SamplingError;
 use crate::importance::Importance;
@@ -20,9 +21,8 @@ use crate::position::{Position, Scalar};
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
 use crate::tables::displacement::RUN;
-use crate::tiling::counts::RECIPROCALS;
+use crate::tiling::MAX_LEVEL;
 use crate::tiling::numbers::{DELTA, Rotation};
-use crate::tiling::{MAX_LEVEL, TileCounts};
 use crate::tree::frame::EdgeFrame;
 
 /// How far, in units, points born at `level` or later may be moved: a vector is at most
@@ -52,6 +52,8 @@ struct Displacer<'w, 'a, I> {
     /// Where importance is read.
     low: DVec2,
     high: DVec2,
+    /// Whether points may be across a seam.
+    wraps: bool,
 }
 
 impl<S: Scalar> Chunk<S> {
@@ -74,9 +76,12 @@ impl<S: Scalar> Chunk<S> {
         let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         let (low, high) = inner_corners(sampling.placement());
-        let mover = Displacer { sampling, displacements, batch, ancestry, low, high };
+        let wraps = !batch.inside && sampling.placement().is_seamless();
+        let mover = Displacer { sampling, displacements, batch, ancestry, low, high, wraps };
         if batch.inside {
             self.read_values(sampling);
+        } else if wraps {
+            self.read_values_across(sampling);
         } else {
             let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
             let len = self.len.min(CHUNK);
@@ -91,7 +96,8 @@ impl<S: Scalar> Chunk<S> {
         } else {
             self.mark_accepted(sampling, batch)?;
         }
-        if !batch.inside {
+        // Across a seam, what is far from the clip may be near.
+        if !batch.inside && !wraps {
             self.reject_far(walk);
         }
         match sure && batch.inside {
@@ -107,6 +113,17 @@ impl<S: Scalar> Chunk<S> {
         Ok(next)
     }
 
+    /// The importance at each candidate, wrapped.
+    #[cold]
+    #[inline(never)]
+    fn read_values_across<I: Importance>(&mut self, sampling: &Sampling<'_, I>) {
+        let seam = Seam::around(sampling.placement().domain());
+        let columns = self.x[..self.len].iter().zip(&self.y);
+        for (value, (x, y)) in self.values.iter_mut().zip(columns) {
+            *value = sampling.importance().value(seam.place(*x, *y));
+        }
+    }
+
     /// Unmarks those of the marked candidates that are too far from the clip to be moved into it.
     #[inline(always)]
     fn reject_far<I: Importance>(&mut self, walk: &Context<'_, '_, I, S>) {
@@ -117,7 +134,8 @@ impl<S: Scalar> Chunk<S> {
             least = if *keep == 1 && *value < least { *value } else { least };
         }
         // The sparser, the longer are the vectors.
-        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(least));
+        let counts = sampling.placement().numbering().counts();
+        let level = counts.level_of(sampling.scale().threshold(least));
         let margin = margin(sampling, level) * (1.0 + 1e-6);
         let corner = sampling.placement().domain().min();
         let (low, high) = clip.widened(margin);
@@ -176,7 +194,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, importance) = (sampling.placement(), sampling.importance());
         let center = placement.domain().min() + placement.center(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
-        importance.longest_constraint() <= 0.0
+        !self.wraps
+            && importance.longest_constraint() <= 0.0
             && importance.lower_bound(&Disc { center, radius }) > 0.0
     }
 
@@ -196,12 +215,13 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (placement, scale) = (sampling.placement(), sampling.scale());
         let level = usize::from(batch.node.level);
         let block = batch.block(placement);
+        let numbering = placement.numbering();
         let tiles = |below: usize| {
-            TileCounts::HEXAGON.all().get(level + below).map_or(f64::INFINITY, |n| *n as f64)
+            numbering.counts().all().get(level + below).map_or(f64::INFINITY, |n| *n as f64)
         };
         let (tiles_1, tiles_2) = (tiles(1), tiles(2));
         let most = if placement.tables().depth() < 3 { tiles_2 } else { tiles(3) };
-        let per_tile = |below: usize| RECIPROCALS.get(level + below).copied().unwrap_or(0.0);
+        let per_tile = |below: usize| numbering.reciprocal(level + below);
         let per_tile = [per_tile(0), per_tile(1), per_tile(2)];
         // Past this, a point is moved at all.
         let least = tiles(usize::from(FIRST_RELAXED_LEVEL - 1).saturating_sub(level));
@@ -209,14 +229,19 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let len = run.len().min(RUN);
         let (mut phases, mut details) = ([1.0f64; RUN], [0.0f64; RUN]);
         let (mut deep, mut other) = ([0u8; RUN], [0u8; RUN]);
-        let (mut at_x, mut at_y, mut local) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
-        for k in 0..len {
-            let i = run.start + k;
-            let at = self.nearest(chunk.x[i], chunk.y[i]);
-            (at_x[k], at_y[k], local[k]) = (at.x, at.y, chunk.values[i]);
-        }
+        let mut local = [0.0; RUN];
+        local[..len].copy_from_slice(&chunk.values[run.start..run.start + len]);
         let (local, unread) = (&mut local[..len], &mut details[..len]);
-        sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
+        if self.wraps {
+            self.surroundings_across(&chunk.x[run.clone()], &chunk.y[run.clone()], local, unread);
+        } else {
+            let (mut at_x, mut at_y) = ([0.0; RUN], [0.0; RUN]);
+            for k in 0..len {
+                let i = run.start + k;
+                [at_x[k], at_y[k]] = self.nearest(chunk.x[i], chunk.y[i]).to_array();
+            }
+            sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, unread);
+        }
         if !self.displacements.has_rough() {
             details = [0.0; RUN];
         }
@@ -264,6 +289,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
             for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
                 (*x, *y) = (*x + *dx, *y + *dy);
             }
+        } else if self.wraps {
+            self.constrain_across(chunk, run, &dx, &dy);
         } else {
             self.constrain(chunk, run, &dx, &dy);
         }
@@ -296,7 +323,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         }
         for (k, needed) in needed[..len].iter_mut().enumerate() {
             let entry = chunk.entry[run.start + k].into();
-            *needed = scale.importance_of(self.batch.rank(block, entry));
+            *needed = scale.importance_of(self.batch.rank(placement.numbering(), block, entry));
         }
         let (moved_x, moved_y) = (at_x, at_y);
         let to = [&mut at_x[..len], &mut at_y[..len]];
@@ -314,6 +341,64 @@ impl<I: Importance> Displacer<'_, '_, I> {
         }
     }
 
+    /// The surroundings of positions, wrapped.
+    #[cold]
+    #[inline(never)]
+    fn surroundings_across<S: Scalar>(
+        &self,
+        x: &[S],
+        y: &[S],
+        local: &mut [f64],
+        detail: &mut [f64],
+    ) {
+        let seam = Seam::around(self.sampling.placement().domain());
+        let (mut at_x, mut at_y) = ([0.0; RUN], [0.0; RUN]);
+        let places = at_x.iter_mut().zip(&mut at_y);
+        for ((at_x, at_y), (x, y)) in places.zip(x.iter().zip(y)) {
+            [*at_x, *at_y] = seam.place(*x, *y).to_array();
+        }
+        let len = x.len().min(RUN);
+        self.sampling.importance().surroundings(&at_x[..len], &at_y[..len], local, detail);
+    }
+
+    /// Moves points across a seam by steps, a point at a time.
+    #[cold]
+    #[inline(never)]
+    fn constrain_across<S: Scalar>(
+        &self,
+        chunk: &mut Chunk<S>,
+        run: Range<usize>,
+        dx: &[S; RUN],
+        dy: &[S; RUN],
+    ) {
+        let (importance, scale) = (self.sampling.importance(), self.sampling.scale());
+        let placement = self.sampling.placement();
+        let (corner, block) = (placement.domain().min(), self.batch.block(placement));
+        let seam = Seam::around(placement.domain());
+        for (i, (dx, dy)) in run.zip(dx.iter().zip(dy)) {
+            let (x, y) = (chunk.x[i], chunk.y[i]);
+            (chunk.x[i], chunk.y[i]) = (x + *dx, y + *dy);
+            let place = |x: S, y: S| corner + DVec2::new(x.to_f64(), y.to_f64());
+            let (center, moved) = (place(x, y), place(chunk.x[i], chunk.y[i]));
+            let (from, to) = (seam.wrapped(center), seam.wrapped(moved));
+            let rank = self.batch.rank(placement.numbering(), block, chunk.entry[i].into());
+            let needed = scale.importance_of(rank);
+            let ([mut to_x], [mut to_y]) = ([to.x], [to.y]);
+            let columns = [&mut to_x, &mut to_y].map(core::slice::from_mut);
+            importance.constrain([&[from.x], &[from.y]], &[needed], columns);
+            let settled = DVec2::new(to_x, to_y);
+            if settled == to {
+                continue;
+            }
+            (chunk.x[i], chunk.y[i]) = if seam.is_between(center, moved) {
+                // No way leads over the seam: the point stays at its center.
+                (x, y)
+            } else {
+                (settled - corner).to_array().map(S::from_f64).into()
+            };
+        }
+    }
+
     /// The step of any point of the chunk: a frontier tile's own center, and centers of an opened tile's
     /// children with points far below them.
     #[inline(never)]
@@ -322,18 +407,22 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let (entry, value) = (usize::from(chunk.entry[i]), chunk.values[i]);
         let (placement, node) = (sampling.placement(), &batch.node);
         let tables = placement.tables();
-        let level = TileCounts::HEXAGON.level_of(sampling.scale().threshold(value));
+        let numbering = placement.numbering();
+        let level = numbering.counts().level_of(sampling.scale().threshold(value));
         if level < FIRST_RELAXED_LEVEL {
             return [S::default(); 2];
         }
-        let at = self.nearest(chunk.x[i], chunk.y[i]);
-        let (phase, detail) = self.phase(at, value, RECIPROCALS[usize::from(level) - 1]);
+        let at = match self.wraps {
+            true => Seam::around(placement.domain()).place(chunk.x[i], chunk.y[i]),
+            false => self.nearest(chunk.x[i], chunk.y[i]),
+        };
+        let (phase, detail) = self.phase(at, value, numbering.reciprocal(usize::from(level) - 1));
         let reading = self.displacements.reading(phase, detail);
         let below = usize::from(level.saturating_sub(node.level));
         let block = batch.block(placement);
         let child = match below {
             // A child is one level below the tile; further down its center is followed.
-            2.. => node.child(tables, entry),
+            2.. => node.child(tables, numbering, entry),
             _ => None,
         };
         let (formula, coefficients) = match child {

@@ -24,6 +24,7 @@ use super::count::{count_below, count_below_at_most, levels_below, work_below};
 use super::displaced::Displaced;
 use super::mode::Mode;
 use super::open::OpenTile;
+use super::seam::Seam;
 use super::shard::Shard;
 use crate::domain::Disc;
 use crate::error::SamplingError;
@@ -31,7 +32,7 @@ use crate::importance::Importance;
 use crate::placement::FRONTIER_LEVEL;
 use crate::position::Position;
 use crate::sampling::{Clip, Sampling, ToWorld};
-use crate::tiling::{MAX_LEVEL, TileCounts};
+use crate::tiling::MAX_LEVEL;
 use crate::tree::node::Node;
 
 /// Open tiles: one a level from the frontier on; the deepest tiles have no children.
@@ -159,7 +160,7 @@ impl<K: Mode> Traversal<K> {
                     return Ok(false);
                 };
                 self.frontier += 1;
-                self.begun = self.enter_frontier(sampling, node)?;
+                self.begun = self.enter_frontier(sampling, &node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
                     self.batch.sure = usize::from(self.batch.constant);
@@ -178,7 +179,8 @@ impl<K: Mode> Traversal<K> {
     /// Moves to the next child of the deepest open tile: how many ranks its bound admits.
     #[inline(always)]
     fn next_child<I: Importance>(&mut self, sampling: &Sampling<'_, I>) -> Option<u64> {
-        let tables = sampling.placement().tables();
+        let placement = sampling.placement();
+        let (tables, numbering) = (placement.tables(), placement.numbering());
         loop {
             let top = self.depth.checked_sub(1)?;
             let open = &mut self.open[top];
@@ -189,7 +191,7 @@ impl<K: Mode> Traversal<K> {
             let digit = open.pending.trailing_zeros() as usize;
             let bit = 1 << digit;
             open.pending &= !bit;
-            self.batch.node = open.node.child(tables, digit)?;
+            self.batch.node = open.node.child(tables, numbering, digit)?;
             self.ancestry = open.ancestry.child(&open.node, digit, &self.batch.node);
             self.batch.bound = open.bounds[digit];
             self.peak = open.bounds[digit] > PEAK * open.mean_bound;
@@ -210,10 +212,15 @@ impl<K: Mode> Traversal<K> {
         let region = Disc { center, radius: placement.reach(node.level, usize::MAX) };
         let radius = region.radius + K::margin(sampling, node.level);
         let region_of_points = Disc { radius, ..region };
-        if !self.clip.touches(&region_of_points) {
+        let seam = Seam::of(placement);
+        let touches = match &seam {
+            None => self.clip.touches(&region_of_points),
+            Some(seam) => seam.touches(&self.clip, &region_of_points),
+        };
+        if !touches {
             return Ok(None);
         }
-        let region = match K::RELAXED {
+        let region = match K::RELAXED && seam.is_none() {
             // Importance is read at the nearest place of the domain.
             true => {
                 let domain = placement.domain();
@@ -221,15 +228,19 @@ impl<K: Mode> Traversal<K> {
             }
             false => region,
         };
-        let bound = sampling.importance().upper_bound(&region);
+        let importance = sampling.importance();
+        let (bound, constant) = match seam.filter(|seam| !seam.is_clear_of(&region)) {
+            None => (importance.upper_bound(&region), importance.is_constant(&region)),
+            Some(seam) => (seam.upper_bound(importance, &region), seam.is_constant(importance)),
+        };
         let limit = sampling.rank_limit_of_bound(bound, &region)?;
         self.batch.node = *node;
-        self.ancestry = K::frontier(placement.tables(), node);
+        self.ancestry = K::frontier(placement, node);
         self.batch.bound = bound;
         // No siblings to compare with.
         self.peak = true;
         self.batch.inside = self.clip.holds(&region_of_points);
-        self.batch.constant = sampling.importance().is_constant(&region);
+        self.batch.constant = constant;
         Ok((limit > node.rank).then_some(limit))
     }
 
@@ -249,14 +260,16 @@ impl<K: Mode> Traversal<K> {
         let mut shard = self.shard.as_mut().filter(|shard| !shard.is_in_piece(self.depth));
         let Candidates { node, inside, constant, bound, .. } = &self.batch;
         let constant = *constant;
-        if limit <= TileCounts::HEXAGON.pair(node.level).0.saturating_add(node.rank) {
+        let placement = sampling.placement();
+        let numbering = placement.numbering();
+        if limit <= numbering.counts().pair(node.level).0.saturating_add(node.rank) {
             return Ok(false);
         }
-        let tables = sampling.placement().tables();
+        let tables = placement.tables();
         let block = tables.block(node.kind);
-        let levels = levels_below(node, limit);
+        let levels = levels_below(numbering, node, limit);
         if let Some(part) = &mut shard {
-            let work = work_below(node, limit);
+            let work = work_below(numbering, node, limit);
             if part.is_piece(work) {
                 if !part.take(work, self.depth) {
                     return Ok(false);
@@ -266,20 +279,20 @@ impl<K: Mode> Traversal<K> {
         }
         // The ancestry of relaxed points reaches only so many levels down.
         let near = !K::RELAXED
-            || TileCounts::HEXAGON.is_within(
+            || numbering.counts().is_within(
                 node.level,
                 KIN_LEVELS.min(tables.depth().max(2)),
                 sampling.scale().threshold(*bound),
             );
         if near && levels <= usize::from(tables.depth()) {
             let end = if constant {
-                count_below(node, block, levels, limit)
+                count_below(numbering, node, block, levels, limit)
             } else {
-                count_below_at_most(node, block, levels, limit)
+                count_below_at_most(numbering, node, block, levels, limit)
             };
             let sure = if constant {
                 end
-            } else if end < WORTH_A_BOUND || (K::RELAXED && !inside) {
+            } else if end < WORTH_A_BOUND || (!inside && (K::RELAXED || placement.is_seamless())) {
                 0
             } else {
                 sure_below(sampling, node, *bound, levels).min(end)
@@ -325,5 +338,6 @@ fn sure_below<I: Importance>(
     if limit <= node.rank {
         return 0;
     }
-    count_below(node, placement.tables().block(node.kind), levels, limit)
+    let block = placement.tables().block(node.kind);
+    count_below(placement.numbering(), node, block, levels, limit)
 }

@@ -12,9 +12,8 @@ use crate::position::Scalar;
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
 use crate::tables::displacement::Reading;
-use crate::tiling::counts::RECIPROCALS;
+use crate::tiling::TileType;
 use crate::tiling::numbers::{DELTA, Rotation};
-use crate::tiling::{TileCounts, TileType};
 use crate::tree::frame::EdgeFrame;
 use crate::tree::node::Node;
 
@@ -56,8 +55,9 @@ impl<'a> UniformDisplacements<'a> {
         }
         let bound = sampling.importance().upper_bound(&region);
         let threshold = sampling.scale().threshold(bound);
-        let level = TileCounts::HEXAGON.level_of(threshold);
-        let tau = threshold * RECIPROCALS[usize::from(level) - 1];
+        let numbering = placement.numbering();
+        let level = numbering.counts().level_of(threshold);
+        let tau = threshold * numbering.reciprocal(usize::from(level) - 1);
         let reading = displacements.reading(tau.clamp(1.0, DELTA), 0.0);
         // Classes over more generations are not told by the block alone.
         let in_block = displacements.generations(&reading) <= u32::from(LEVELS);
@@ -101,7 +101,7 @@ impl<'a> UniformDisplacements<'a> {
         let turns: [Rotation; 12] = core::array::from_fn(|turn| Rotation::new(turn as u8));
         // The tile of least rank has the most.
         let first = Node { kind, level: self.level - LEVELS, ..Node::root() };
-        let end = count_below(&first, block, LEVELS.into(), self.limit);
+        let end = count_below(placement.numbering(), &first, block, LEVELS.into(), self.limit);
         let [x, y] = &mut self.vectors[kind.index()];
         let columns = x.iter_mut().zip(y);
         for ((i, (turn, class)), (x, y)) in block.relax_keys().enumerate().take(end).zip(columns) {

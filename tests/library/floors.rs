@@ -16,7 +16,7 @@ const FLOORS: [&[&str]; 11] = [
     &["sampling"],
     &["walk"],
     &["emit"],
-    &["estimate", "refine", "export"],
+    &["estimate", "refine", "export", "mesh"],
     &["light"],
     &["lib"],
 ];

@@ -8,7 +8,9 @@ mod frame;
 mod hard_cases;
 mod invariance;
 mod laws;
+mod meshes;
 mod numbering;
+mod seamless;
 #[cfg(feature = "serde")]
 mod stored;
 mod tables;

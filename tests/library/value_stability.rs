@@ -151,6 +151,23 @@ fn points_are_those_of_the_golden_file() {
         let sampling = Sampling::new(&placement, &bump, Amount::Density(20_000.0)).unwrap();
         describe(&mut lines, &format!("closure-{seed}"), &sampling);
     }
+    // Without a border: constant and on maps, fixed and relaxed.
+    let wide = Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.5, 5.0)).unwrap();
+    for (name, domain) in [("unit", Domain::UNIT), ("3-2", wide)] {
+        let placement = Placement::seamless(domain, 1).unwrap();
+        for count in [50.0, 1_000.0, 40_000.0] {
+            let constant =
+                Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
+            describe(&mut lines, &format!("seamless-constant-{name}-{count}"), &constant);
+            let relaxed = constant.relaxed().unwrap();
+            describe(&mut lines, &format!("seamless-relaxed-{name}-{count}"), &relaxed);
+        }
+        let map = texture().over(domain);
+        let mapped = Sampling::new(&placement, &map, Amount::Points(10_000.0)).unwrap();
+        describe(&mut lines, &format!("seamless-texture-{name}"), &mapped);
+        let relaxed = mapped.relaxed().unwrap();
+        describe(&mut lines, &format!("seamless-texture-relaxed-{name}"), &relaxed);
+    }
     if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
         let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/library/golden/points.txt");
         return std::fs::write(golden, lines).unwrap();

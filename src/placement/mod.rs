@@ -1,18 +1,24 @@
 //! Placements: where in the infinite tiling a domain lies.
 
+mod torus;
+
 use glam::DVec2;
 
 use crate::domain::Domain;
 use crate::error::SamplingError;
 use crate::random::SplitMix64;
 use crate::tables::{DisplacementTable, ExactPoint, Tables};
+use crate::tiling::counts::Numbering;
 use crate::tiling::numbers::{REACH, SQRT_3, direction, lambda_power};
-use crate::tiling::{MAX_LEVEL, TileCounts};
+use crate::tiling::{FCode, MAX_LEVEL, RankError, TileCounts, TileType};
 use crate::tree::frame::Frame;
 use crate::tree::node::Node;
+use torus::Torus;
 
 /// The level of the few tiles at which every walk of a placement starts.
 pub(crate) const FRONTIER_LEVEL: u8 = 4;
+
+const _: () = assert!(FRONTIER_LEVEL == torus::ROOT_LEVEL + 1, "children of roots");
 
 /// Points of earlier levels stay where they are: they occur where fewer than some four points are
 /// expected in a domain, and the tiles from which they could move in would be very many.
@@ -54,11 +60,12 @@ pub struct Placement<'t> {
     tables: Tables<'t>,
     /// In [0, 1), added to every rank before it is compared.
     rank_shift: f64,
+    numbering: Numbering,
     frontier: [Option<Node>; MAX_FRONTIER],
+    /// What stands in for the root and the frontier of a seamless domain.
+    torus: Option<Torus>,
     /// The reference tile's center, relative to the domain's least corner.
     origin: DVec2,
-    /// The edge of the frontier's tiles, in diagonals of the domain, at least [`FRONTIER_EDGE`].
-    frontier_edge: f64,
     /// For each level: the vector of half an edge along the tiling's x axis.
     half_edges: [DVec2; MAX_LEVEL + 1],
     /// For each level: [`REACH`] of its edges, in units.
@@ -66,7 +73,7 @@ pub struct Placement<'t> {
     /// f32 positions are off by up to 2⁻²¹ diagonals; this is twice that, and what adding the corner
     /// rounds.
     slack: f64,
-    /// The area of the whole root in squared units.
+    /// The area of the whole root, or torus, in squared units.
     root_area: f64,
 }
 
@@ -100,6 +107,48 @@ impl Placement<'static> {
     /// past the deepest level.
     pub fn aligned(domain: Domain, seed: u64, density: f64) -> Result<Self, SamplingError> {
         Self::aligned_in(domain, seed, density, Tables::built_in())
+    }
+
+    /// The placement of a domain that has no border: opposite sides are one, and copies of its points side
+    /// by side in rows and columns show no seam.
+    ///
+    /// The domain's sides must be as k to l, whole numbers up to 16 (rounding in `f32` is forgiven): the
+    /// domain is k × l cells of a square-triangle tiling that repeats, whose subdivisions repeat with it.
+    /// All else is as under [`new`](Self::new), with these differences:
+    ///
+    /// - The number of points under a constant importance is exact: n for n points asked for.
+    /// - Importance continues on the other side: a map should wrap too, or its own seam will show.
+    /// - Distances are those of the torus: at 56·k·l, 780·k·l, 10,864·k·l … points the set is a complete
+    ///   level, as in [`aligned`](Self::aligned).
+    /// - Relaxed points cross the border. One that would enter a place of importance 0 there stays at its
+    ///   center.
+    /// - Only position and quarter turns are random: rows of points at 15° and every 30° from there are as
+    ///   likely in any place, so that estimates are unbiased, but no other direction gets its turn.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use twelvefold::{Amount, Constant, Domain, Placement, Sampling};
+    /// let placement = Placement::seamless(Domain::UNIT, 7)?;
+    /// let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(780.0))?;
+    /// let points: Vec<DVec2> =
+    ///     sampling.points()?.map(|p| Ok(p?.position)).collect::<Result<_, twelvefold::SamplingError>>()?;
+    /// assert_eq!(points.len(), 780);
+    /// // The nearest neighbors are equally far apart, over the border as well.
+    /// let distance = |a: DVec2, b: DVec2| {
+    ///     let away = (a - b).abs();
+    ///     away.min(1.0 - away).length()
+    /// };
+    /// let nearest = |a: &DVec2| {
+    ///     points.iter().filter(|b| *b != a).map(|b| distance(*a, *b)).fold(1.0, f64::min)
+    /// };
+    /// assert!(points.iter().all(|a| (nearest(a) - nearest(&points[0])).abs() < 1e-12));
+    /// # Ok::<(), twelvefold::SamplingError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SamplingError::Ratio`] for sides that are not as k to l.
+    pub fn seamless(domain: Domain, seed: u64) -> Result<Self, SamplingError> {
+        Self::seamless_in(domain, seed, Tables::built_in())
     }
 }
 
@@ -142,6 +191,54 @@ impl<'t> Placement<'t> {
         Ok(Self::with_scale(domain, seed, FRONTIER_EDGE * stretch, tables))
     }
 
+    /// [`seamless`](Placement::seamless) with other tables.
+    ///
+    /// # Errors
+    /// As [`seamless`](Placement::seamless).
+    pub fn seamless_in(
+        domain: Domain,
+        seed: u64,
+        tables: Tables<'t>,
+    ) -> Result<Self, SamplingError> {
+        let size = domain.size();
+        let ratio = SamplingError::Ratio { width: size.x, height: size.y };
+        let cells = Torus::cells_of(size).ok_or(ratio)?;
+        let numbering =
+            Numbering::of_pentagons(Torus::roots(cells), torus::ROOT_LEVEL).ok_or(ratio)?;
+        let mut random = SplitMix64::new(seed);
+        let quarters = (random.next_u64() >> 62) as u8;
+        let shift = DVec2::new(random.unit(), random.unit());
+        let rank_shift = random.unit();
+        let torus = Torus::new(size, cells, shift, quarters);
+        let root_half_edge = Torus::half_edge(size, cells);
+        let half_edges = core::array::from_fn(|level| {
+            let root = usize::from(torus::ROOT_LEVEL);
+            match level.checked_sub(root) {
+                Some(below) => root_half_edge / lambda_power(below),
+                None => root_half_edge * lambda_power(root - level),
+            }
+        });
+        Ok(Self {
+            domain,
+            tables,
+            rank_shift,
+            numbering,
+            frontier: [None; MAX_FRONTIER],
+            origin: torus.origin() + 0.0,
+            torus: Some(torus),
+            half_edges,
+            reach: half_edges.map(|half: DVec2| REACH * 2.0 * half.length()),
+            slack: Self::slack(&domain),
+            root_area: domain.area(),
+        })
+    }
+
+    /// Twice what rounding in `f32` puts positions off, and what adding the corner rounds.
+    fn slack(domain: &Domain) -> f64 {
+        let farthest = domain.min().abs().max(domain.max().abs()).max_element();
+        domain.diagonal() * 1e-6 + farthest * 1e-15
+    }
+
     /// The placement whose frontier tiles have an edge of `frontier_edge` diagonals of the domain.
     fn with_scale(domain: Domain, seed: u64, frontier_edge: f64, tables: Tables<'t>) -> Self {
         let mut random = SplitMix64::new(seed);
@@ -157,25 +254,25 @@ impl<'t> Placement<'t> {
             domain,
             tables,
             rank_shift,
+            numbering: Numbering::HEXAGON,
             frontier: [None; MAX_FRONTIER],
+            torus: None,
             origin: DVec2::ZERO,
-            frontier_edge,
             half_edges: core::array::from_fn(|level| {
                 0.5 * (root_edge / lambda_power(level)) * axis
             }),
             reach: core::array::from_fn(|level| REACH * root_edge / lambda_power(level)),
-            slack: domain.diagonal() * 1e-6
-                + domain.min().abs().max(domain.max().abs()).max_element() * 1e-15,
+            slack: Self::slack(&domain),
             // A root `a` owns √3/2 squared edges.
             root_area: 0.5 * SQRT_3 * root_edge * root_edge,
         };
-        placement.find_frontier(center);
+        placement.find_frontier(center, frontier_edge);
         placement
     }
 
     /// Walks from the root to the tiles of the frontier level whose descendants can reach the domain,
-    /// whose center is `center` in root edges.
-    fn find_frontier(&mut self, center: DVec2) {
+    /// whose center is `center` in root edges; their edge is `frontier_edge` diagonals.
+    fn find_frontier(&mut self, center: DVec2, frontier_edge: f64) {
         let mut count = 0;
         let mut nearest = (f64::INFINITY, ExactPoint::default());
         // Depth first; at most 13 siblings wait on each of the levels above the frontier.
@@ -187,7 +284,7 @@ impl<'t> Placement<'t> {
             // Everything in edges of this level.
             let to_domain = center * lambda_power(node.level.into()) - node.center.to_dvec2();
             let half_diagonal =
-                0.5 / self.frontier_edge / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
+                0.5 / frontier_edge / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
             // Relaxed points move in from farther away.
             let step = self.tables.displacements().map_or(0.0, DisplacementTable::longest)
                 / lambda_power(usize::from(FIRST_RELAXED_LEVEL - node.level));
@@ -206,7 +303,7 @@ impl<'t> Placement<'t> {
                 continue;
             }
             for digit in (0..node.kind.child_count()).rev() {
-                if let Some(child) = node.child(&self.tables, digit) {
+                if let Some(child) = node.child(&self.tables, &self.numbering, digit) {
                     stack[waiting] = child;
                     waiting += 1;
                 }
@@ -239,13 +336,39 @@ impl<'t> Placement<'t> {
 
     /// The tiles at which walks start.
     #[cfg(test)]
-    pub(crate) fn frontier(&self) -> impl DoubleEndedIterator<Item = &Node> {
-        self.frontier.iter().flatten()
+    pub(crate) fn frontier(&self) -> impl Iterator<Item = Node> {
+        (0..).map_while(|i| self.frontier_node(i))
     }
 
     /// Tile `i` of those at which walks start.
-    pub(crate) fn frontier_node(&self, i: usize) -> Option<&Node> {
-        self.frontier.get(i)?.as_ref()
+    pub(crate) fn frontier_node(&self, i: usize) -> Option<Node> {
+        match &self.torus {
+            None => *self.frontier.get(i)?,
+            Some(torus) => torus.node(&self.tables, &self.numbering, i),
+        }
+    }
+
+    /// The root of a tile of the frontier, and the way from it, which always is.
+    pub(crate) fn way_to(&self, node: &Node) -> (Node, Result<FCode, RankError>) {
+        match &self.torus {
+            None => {
+                let code = FCode::from_rank(TileType::A, node.level.into(), node.rank);
+                (Node::root(), code)
+            }
+            Some(torus) => torus.way_to(node),
+        }
+    }
+
+    /// Whether opposite sides of the domain are one.
+    #[inline(always)]
+    pub(crate) fn is_seamless(&self) -> bool {
+        self.torus.is_some()
+    }
+
+    /// How the placement's tiles are numbered.
+    #[inline(always)]
+    pub(crate) fn numbering(&self) -> &Numbering {
+        &self.numbering
     }
 
     /// The reference tile's center, relative to the domain's least corner.
@@ -258,14 +381,19 @@ impl<'t> Placement<'t> {
         self.rank_shift
     }
 
-    /// How many ranks correspond to one point a squared unit: the area of the root.
+    /// How many ranks correspond to one point a squared unit: the area of the root or the torus.
     pub(crate) fn ranks_per_density(&self) -> f64 {
         self.root_area
     }
 
     /// The greatest threshold T in ranks: the tile count of the deepest level.
     pub(crate) fn greatest_threshold(&self) -> f64 {
-        TileCounts::HEXAGON.all()[MAX_LEVEL] as f64
+        self.deepest_count() as f64
+    }
+
+    /// The tile count of the deepest level.
+    pub(crate) fn deepest_count(&self) -> u64 {
+        self.numbering.counts().all()[MAX_LEVEL]
     }
 
     /// Half an edge of `level`, along the tiling's x axis, in units.
