@@ -60,7 +60,7 @@ fn write_tables() -> Result<(), String> {
     std::fs::write(&file, bytes).map_err(|error| format!("{}: {error}", file.display()))
 }
 
-/// The relaxed offsets, unless the file is missing: then the tables hold fixed centres only.
+/// The relaxed offsets, unless the file is missing: then the tables hold fixed centers only.
 fn read_displacements() -> Result<Option<bake::displacement::Displacements>, String> {
     match std::fs::read(RELAXED) {
         Ok(bytes) => bake::displacement::Displacements::from_bytes(&bytes)

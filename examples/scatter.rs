@@ -10,13 +10,13 @@ use std::time::Instant;
 use glam::{DVec2, DVec3, Vec2};
 use twelvefold::{Amount, Domain, ImageMap, InvalidPixels, Placement, Sampling};
 
-/// The terrain is a square of so many metres, its heights a grid of so many nodes a side.
+/// The terrain is a square of so many meters, its heights a grid of so many nodes a side.
 const METRES: f64 = 4000.0;
 const SIDE: usize = 512;
 
 const TREES: f64 = 10_000.0;
 
-/// Metres: the lake, and where trees end.
+/// Meters: the lake, and where trees end.
 const WATER: f64 = 90.0;
 const TREE_LINE: f64 = 480.0;
 
@@ -52,7 +52,7 @@ impl Terrain {
         self.heights[y.min(SIDE - 1) * SIDE + x.min(SIDE - 1)]
     }
 
-    /// Height in metres at a place in metres, and the normal there.
+    /// Height in meters at a place in meters, and the normal there.
     fn at(&self, place: DVec2) -> (f64, DVec3) {
         let p = (place / METRES * SIDE as f64 - 0.5)
             .clamp(DVec2::ZERO, DVec2::splat(SIDE as f64 - 1.0));

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use glam::{DVec2, Vec2};
 use twelvefold::bake::{bake, displacement::Displacements};
-use twelvefold::estimate::{Warp, Weighting, exactly, normalise, post_stratify};
+use twelvefold::estimate::{Warp, Weighting, exactly, normalize, post_stratify};
 use twelvefold::tiling::{Digits, FCode, TileCounts, TileType};
 use twelvefold::{
     Amount, BilinearMap, Constant, Domain, EnvironmentMap, ImageMap, Importance, InvalidPixels,
@@ -273,6 +273,6 @@ fn points_of_map(map: &ImageMap, seed: u64) {
         && let Ok(mut points) = points.collect::<Result<Vec<_>, _>>()
     {
         post_stratify(&mut points, map, (seed % 10) as f64);
-        normalise(&mut points, n as f64);
+        normalize(&mut points, n as f64);
     }
 }

@@ -106,9 +106,9 @@ impl Domain {
     /// The smallest region that holds the whole domain.
     #[must_use]
     pub fn disc(&self) -> Disc {
-        // A few ulp more than half the diagonal, for the rounding of the centre.
+        // A few ulp more than half the diagonal, for the rounding of the center.
         Disc {
-            centre: self.min + 0.5 * self.size,
+            center: self.min + 0.5 * self.size,
             radius: self.diagonal() * (0.5 + 1e-9) + 1e-15 * self.min.abs().max_element(),
         }
     }
@@ -117,8 +117,8 @@ impl Domain {
 /// A closed disc in the caller's units: where the points of a subtree can lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// The centre.
-    pub centre: DVec2,
+    /// The center.
+    pub center: DVec2,
     /// The radius, not negative.
     pub radius: f64,
 }

@@ -29,12 +29,12 @@ pub enum SamplingError {
     },
     /// The density asked for is past the deepest level whose ranks fit 64 bits.
     TooDense {
-        /// The centre of the region with that density.
+        /// The center of the region with that density.
         near: DVec2,
     },
     /// An upper bound is NaN, infinite or negative.
     InvalidBound {
-        /// The centre of the region asked about.
+        /// The center of the region asked about.
         near: DVec2,
         /// The bound.
         bound: f64,

@@ -84,7 +84,7 @@ impl Export {
         let level = |i: usize| i as u8;
         let tile = |i| {
             let node = placement.frontier_node(i)?;
-            let ExactPoint { u, v, p, q } = node.centre;
+            let ExactPoint { u, v, p, q } = node.center;
             let (kind, rotation) = (node.kind, node.rotation);
             Some(FrontierTile { kind, rotation, center: [u, v, p, q], rank: node.rank })
         };

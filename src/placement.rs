@@ -18,8 +18,8 @@ pub(crate) const FRONTIER_LEVEL: u8 = 4;
 /// expected in a domain, and the tiles from which they could move in would be very many.
 pub(crate) const FIRST_RELAXED_LEVEL: u8 = FRONTIER_LEVEL + 2;
 
-/// The most frontier tiles. Their centres are at least one edge apart and lie within 1.09 edges of
-/// the domain's centre (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
+/// The most frontier tiles. Their centers are at least one edge apart and lie within 1.09 edges of
+/// the domain's center (half a diagonal plus the reach of a tile, [`FRONTIER_EDGE`]), so that no more
 /// than 9 fit; relaxed points can move in from up to 0.58 edges farther
 /// ([`MAX_LENGTH`](crate::bake::displacement::MAX_LENGTH)), which admits 17.
 const MAX_FRONTIER: usize = 24;
@@ -37,7 +37,7 @@ const MAX_STRETCH: f64 = 3.75;
 /// Rounded up.
 const WITHIN: [f64; 5] = [0.0, 0.732_050_81, 0.928_203_24, 0.980_762_12, 1.0];
 
-/// Every point of the plane within this many edges of an `a` centre is covered by its descendants.
+/// Every point of the plane within this many edges of an `a` center is covered by its descendants.
 const INNER_RADIUS: f64 = 1.0 - REACH;
 
 /// Position, rotation and scale of a domain inside a far larger root tile, all from one seed.
@@ -55,7 +55,7 @@ pub struct Placement<'t> {
     /// In [0, 1), added to every rank before it is compared.
     rank_shift: f64,
     frontier: [Option<Node>; MAX_FRONTIER],
-    /// The reference tile's centre, relative to the domain's least corner.
+    /// The reference tile's center, relative to the domain's least corner.
     origin: DVec2,
     /// The edge of the frontier's tiles, in diagonals of the domain, at least [`FRONTIER_EDGE`].
     frontier_edge: f64,
@@ -80,7 +80,7 @@ impl Placement<'static> {
     /// A placement whose scale makes a constant density a *complete level* of the tiling.
     ///
     /// At `density` points a squared unit the threshold T is the tile count of a level, and the points
-    /// are all tile centres of that level: far more even than between levels (least distance 0.96 of the
+    /// are all tile centers of that level: far more even than between levels (least distance 0.96 of the
     /// hexagonal lattice's, and integration as accurate as with the best low-discrepancy sets), for
     /// any density. With an importance, pass the density that its most common value will get.
     ///
@@ -133,7 +133,7 @@ impl<'t> Placement<'t> {
             .iter()
             .map(|tiles| *tiles as f64)
             .find(|tiles| *tiles >= least_tiles)
-            .ok_or(SamplingError::TooDense { near: domain.disc().centre })?;
+            .ok_or(SamplingError::TooDense { near: domain.disc().center })?;
         let stretch = libm::sqrt(tiles / least_tiles);
         if !stretch.is_finite() || stretch > MAX_STRETCH {
             // Less than one point in the whole root: any scale is as good.
@@ -146,11 +146,11 @@ impl<'t> Placement<'t> {
     fn with_scale(domain: Domain, seed: u64, frontier_edge: f64, tables: Tables<'t>) -> Self {
         let mut random = SplitMix64::new(seed);
         let axis = DVec2::from_array(random.direction());
-        // The domain's centre in root edges. Density ∝ (1 − r²)² towards the rim rather than uniform:
+        // The domain's center in root edges. Density ∝ (1 − r²)² towards the rim rather than uniform:
         // the bias that a finite root leaves is ten times smaller.
         let root_edge = frontier_edges_per_root() * frontier_edge * domain.diagonal();
         let range = INNER_RADIUS - 0.5 * domain.diagonal() / root_edge;
-        let centre = range * DVec2::from_array(random.in_disc(2));
+        let center = range * DVec2::from_array(random.in_disc(2));
         let rank_shift = random.unit();
 
         let mut placement = Self {
@@ -169,13 +169,13 @@ impl<'t> Placement<'t> {
             // A root `a` owns √3/2 squared edges.
             root_area: 0.5 * SQRT_3 * root_edge * root_edge,
         };
-        placement.find_frontier(centre);
+        placement.find_frontier(center);
         placement
     }
 
     /// Walks from the root to the tiles of the frontier level whose descendants can reach the domain,
-    /// whose centre is `centre` in root edges.
-    fn find_frontier(&mut self, centre: DVec2) {
+    /// whose center is `center` in root edges.
+    fn find_frontier(&mut self, center: DVec2) {
         let mut count = 0;
         let mut nearest = (f64::INFINITY, ExactPoint::default());
         // Depth first; at most 13 siblings wait on each of the levels above the frontier.
@@ -185,7 +185,7 @@ impl<'t> Placement<'t> {
             waiting -= 1;
             let node = stack[waiting];
             // Everything in edges of this level.
-            let to_domain = centre * lambda_power(node.level.into()) - node.centre.to_dvec2();
+            let to_domain = center * lambda_power(node.level.into()) - node.center.to_dvec2();
             let half_diagonal =
                 0.5 / self.frontier_edge / lambda_power(usize::from(FRONTIER_LEVEL - node.level));
             // Relaxed points move in from farther away.
@@ -196,7 +196,7 @@ impl<'t> Placement<'t> {
             }
             if node.level == FRONTIER_LEVEL {
                 if to_domain.length() < nearest.0 {
-                    nearest = (to_domain.length(), node.centre);
+                    nearest = (to_domain.length(), node.center);
                 }
                 debug_assert!(count < MAX_FRONTIER, "the packing bound of MAX_FRONTIER");
                 if let Some(slot) = self.frontier.get_mut(count) {
@@ -213,13 +213,13 @@ impl<'t> Placement<'t> {
             }
         }
 
-        // From here on, coordinates are relative to the tile nearest to the domain's centre.
+        // From here on, coordinates are relative to the tile nearest to the domain's center.
         let (_, reference) = nearest;
         for node in self.frontier.iter_mut().flatten() {
-            node.centre = node.centre.minus(reference);
+            node.center = node.center.minus(reference);
         }
         let level = usize::from(FRONTIER_LEVEL);
-        let from_domain = reference.to_dvec2() - centre * lambda_power(level);
+        let from_domain = reference.to_dvec2() - center * lambda_power(level);
         let edge = 2.0 * self.half_edges[level];
         // + 0.0 turns a −0.0 into 0.0, so that sums do not depend on the sign of a zero term.
         self.origin = 0.5 * self.domain.size() + edge.rotate(from_domain) + 0.0;
@@ -248,7 +248,7 @@ impl<'t> Placement<'t> {
         self.frontier.get(i)?.as_ref()
     }
 
-    /// The reference tile's centre, relative to the domain's least corner.
+    /// The reference tile's center, relative to the domain's least corner.
     pub(crate) fn origin(&self) -> DVec2 {
         self.origin
     }
@@ -278,13 +278,13 @@ impl<'t> Placement<'t> {
         (2.0 * self.half_edge(level)).rotate(DVec2::from_array(direction(rotation)))
     }
 
-    /// A node's centre, relative to the domain's least corner.
-    pub(crate) fn centre(&self, node: &Node) -> DVec2 {
+    /// A node's center, relative to the domain's least corner.
+    pub(crate) fn center(&self, node: &Node) -> DVec2 {
         let half_edge = self.half_edge(node.level);
-        DVec2::from_array(Frame::new(half_edge, self.origin, 0).position(node.centre))
+        DVec2::from_array(Frame::new(half_edge, self.origin, 0).position(node.center))
     }
 
-    /// The radius, in units, of a disc around a node's centre that holds all descendants of the node
+    /// The radius, in units, of a disc around a node's center that holds all descendants of the node
     /// that are born at most `levels` levels below it, as computed in either precision.
     pub(crate) fn reach(&self, level: u8, levels: usize) -> f64 {
         self.reach[usize::from(level)] * WITHIN[levels.min(WITHIN.len() - 1)] + self.slack

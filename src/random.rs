@@ -32,7 +32,7 @@ impl SplitMix64 {
         }
     }
 
-    /// (cos, sin) of a uniform angle: a point of the disc, normalised.
+    /// (cos, sin) of a uniform angle: a point of the disc, normalized.
     pub(crate) fn direction(&mut self) -> [f64; 2] {
         loop {
             let [x, y] = self.in_disc(0);

@@ -53,9 +53,9 @@ pub(crate) enum Command {
     /// List every tile of one level of the tiling as CSV.
     ///
     /// The columns are fcode,tile,rotation,z0,z1,z2,z3,rank,threshold,x,y: the tile's address, newest
-    /// digit first; its type; its rotation in units of 30°, 0 to 11; its centre z0 + z1·ζ + z2·ζ² +
+    /// digit first; its type; its rotation in units of 30°, 0 to 11; its center z0 + z1·ζ + z2·ζ² +
     /// z3·ζ³, ζ = e^(iπ/6), in edges of its own level; its rank; rank over the number of tiles; and
-    /// the centre again in edges of the root. The root's centre is the origin. Tiles are listed depth
+    /// the center again in edges of the root. The root's center is the origin. Tiles are listed depth
     /// first, children by ascending digit.
     Tiling(TilingOptions),
 }
@@ -67,7 +67,7 @@ pub(crate) struct MeasureOptions {
     pub(crate) points: PathBuf,
 
     /// The rectangle in which the points are measured, as X,Y,WIDTH,HEIGHT [default: the photograph of
-    /// --image, or 0,0,1,1]. Points outside serve as neighbours only.
+    /// --image, or 0,0,1,1]. Points outside serve as neighbors only.
     #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = window, allow_hyphen_values = true)]
     pub(crate) window: Option<Window>,
 
@@ -153,7 +153,7 @@ pub(crate) struct EnvmapOptions {
     #[arg(long, value_enum, default_value_t = Method::Sobol)]
     pub(crate) method: Method,
 
-    /// How the map is read between its pixels' centres. `bilinear` is for `--method sobol` only.
+    /// How the map is read between its pixels' centers. `bilinear` is for `--method sobol` only.
     #[arg(long, value_enum, default_value_t = FilterName::Nearest)]
     pub(crate) filter: FilterName,
 }
@@ -161,17 +161,17 @@ pub(crate) struct EnvmapOptions {
 /// A convention for latitude-longitude images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FrameName {
-    /// z up, left-handed; the image's centre is -x, right of it -y.
+    /// z up, left-handed; the image's center is -x, right of it -y.
     Pbrt,
-    /// y up, right-handed; the image's centre is +z, right of it -x.
+    /// y up, right-handed; the image's center is +z, right of it -x.
     Mitsuba,
-    /// z up, right-handed; the image's centre is +x, right of it -y. Cycles' as well.
+    /// z up, right-handed; the image's center is +x, right of it -y. Cycles' as well.
     #[value(alias = "cycles")]
     Blender,
-    /// y up, right-handed; the image's centre is +x, right of it +z. three.js' as well.
+    /// y up, right-handed; the image's center is +x, right of it +z. three.js' as well.
     #[value(alias = "threejs", alias = "three.js")]
     Gltf,
-    /// y up, right-handed; the image's centre is +z, right of it -x. USD's as well.
+    /// y up, right-handed; the image's center is +z, right of it -x. USD's as well.
     #[value(alias = "usd")]
     Openexr,
 }
@@ -249,7 +249,7 @@ pub(crate) enum Method {
 pub(crate) enum FilterName {
     /// A pixel's radiance holds over the whole pixel.
     Nearest,
-    /// Radiance is interpolated between the pixels' centres, over the seam and the poles.
+    /// Radiance is interpolated between the pixels' centers, over the seam and the poles.
     Bilinear,
 }
 
@@ -282,7 +282,7 @@ pub(crate) struct StippleOptions {
     /// The photograph, or `-` for standard input: PNG, JPEG, TIFF, WebP, GIF, BMP, PNM, PFM, Targa,
     /// QOI, farbfeld, Radiance HDR or OpenEXR, told apart by content.
     ///
-    /// Colour profiles are followed, and the photograph is turned upright. Transparent pixels get no
+    /// Color profiles are followed, and the photograph is turned upright. Transparent pixels get no
     /// dots. In float files negative values count as zero and values above one as white; a NaN or an
     /// infinity is an error.
     pub(crate) photo: PathBuf,
@@ -418,7 +418,7 @@ pub(crate) enum DotGain {
 pub(crate) enum Centers {
     /// Moved aside, evenly spread.
     Relaxed,
-    /// At the centres of tiles.
+    /// At the centers of tiles.
     Fixed,
 }
 

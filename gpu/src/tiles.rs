@@ -188,7 +188,7 @@ impl Walk<'_> {
         )
     }
 
-    /// All tiles of a level, depth first, so that neighbours in the list are neighbours in the plane.
+    /// All tiles of a level, depth first, so that neighbors in the list are neighbors in the plane.
     fn collect(&self, frontier: &[Tile], level: u8) -> StartTiles {
         let mut references: Vec<Tile> =
             frontier.iter().flat_map(|tile| self.children(tile, [0; 2])).collect();

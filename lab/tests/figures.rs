@@ -64,7 +64,7 @@ fn points(path: &Node<'_, '_>) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn centres(circles: &[Node<'_, '_>]) -> Vec<[f64; 2]> {
+fn centers(circles: &[Node<'_, '_>]) -> Vec<[f64; 2]> {
     circles.iter().map(|circle| [number(circle, "cx"), number(circle, "cy")]).collect()
 }
 
@@ -119,10 +119,10 @@ fn figure_1_shows_unit_edges_and_a_dual_of_pentagons_and_hexagons() {
 }
 
 #[test]
-fn figure_2_keeps_every_coarse_centre_and_shows_2000_points() {
+fn figure_2_keeps_every_coarse_center_and_shows_2000_points() {
     let document = document(2);
-    let fine = centres(&elements(group(&document, "fine-centres"), "circle"));
-    let coarse = centres(&elements(group(&document, "coarse-centres"), "circle"));
+    let fine = centers(&elements(group(&document, "fine-centers"), "circle"));
+    let coarse = centers(&elements(group(&document, "coarse-centers"), "circle"));
     assert_eq!(elements(group(&document, "fine"), "path").len(), fine.len());
     assert_eq!(elements(group(&document, "coarse"), "path").len(), coarse.len());
     // The coarse patch reaches beyond the frame by one of its own, larger edges.
@@ -175,7 +175,7 @@ fn figure_4_rises_between_powers_of_delta() {
 #[test]
 fn figure_5_has_dots_in_proportion_to_the_ramp() {
     let document = document(5);
-    let dots = centres(&elements(group(&document, "points"), "circle"));
+    let dots = centers(&elements(group(&document, "points"), "circle"));
     assert!((6300..=6500).contains(&dots.len()), "{}", dots.len());
     // Tenths of a ramp of length 1000 that starts at 8: 1, 3, 5 … 19 hundredths of the dots.
     for tenth in 0..10 {
@@ -220,11 +220,11 @@ fn figure_7_shows_1024_points_of_each_sequence() {
         // Ascending thresholds: from dark violet to yellow.
         assert_eq!(circles[0].attribute("fill"), Some("#440154"));
         assert!(circles[1023].attribute("fill").unwrap().starts_with("#f"));
-        let centres = centres(&circles);
-        let distances = centres
+        let centers = centers(&circles);
+        let distances = centers
             .iter()
             .enumerate()
-            .flat_map(|(i, a)| centres[..i].iter().map(move |b| (a[0] - b[0]).hypot(a[1] - b[1])));
+            .flat_map(|(i, a)| centers[..i].iter().map(move |b| (a[0] - b[0]).hypot(a[1] - b[1])));
         spacing.push(distances.fold(f64::INFINITY, f64::min));
     }
     // "Our sequence offers higher level of regularity": the closest pair is farther apart.

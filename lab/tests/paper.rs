@@ -56,7 +56,7 @@ fn dodecatodecimal_has_the_gaps_and_collisions_that_were_measured() {
 
 #[test]
 fn the_same_weights_oldest_digit_first_do_number_the_tiles() {
-    // In depth-first order, which is useless as a threshold: neighbours get neighbouring numbers.
+    // In depth-first order, which is useless as a threshold: neighbors get neighboring numbers.
     for root in TileType::ALL {
         for levels in 0..=3 {
             let values: Vec<u64> = codes(root, levels)

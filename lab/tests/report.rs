@@ -21,7 +21,7 @@ fn a_small_report_is_whole() {
         "ours, relaxed",
         "ours, complete level",
         "ours, seamless set",
-        "ours, normalised",
+        "ours, normalized",
         "ours, smoothed",
         "ours, post-stratified",
         "ours, few-probe",

@@ -43,14 +43,14 @@ fn uniform_densities_are_even_at_every_count_where_training_never_was() {
         assert!(e.mean_distance >= 0.90, "tau {tau}: {e:?}");
         assert!(e.least_distance >= 0.72, "tau {tau}: {e:?}");
     }
-    // The measure can tell: fixed centres are far from it.
+    // The measure can tell: fixed centers are far from it.
     let fixed = uniform_sweep(&rules, None, 3, 1, SEED).unwrap();
     let fixed = worst(fixed.iter().flat_map(|(_, measured)| measured)).unwrap();
     assert!(fixed.low_frequency > 0.1 && fixed.least_distance < 0.7, "{fixed:?}");
 }
 
 #[test]
-fn images_are_followed_closely_and_edges_are_sharper_than_with_fixed_centres() {
+fn images_are_followed_closely_and_edges_are_sharper_than_with_fixed_centers() {
     let (rules, table) = (rules(), committed());
     let sweep = |table, values: &[f32]| {
         image_sweep(&rules, table, values, TEST_IMAGE_SIDE, 65536.0, 2, SEED).unwrap()
@@ -240,7 +240,7 @@ fn training_gives_the_same_bytes_on_one_thread_and_on_two_and_others_for_another
     let (one, two) = (train(1, 7), train(2, 7));
     assert_eq!(one.to_bytes().unwrap(), two.to_bytes().unwrap());
     assert_ne!(one.smooth, train(2, 8).smooth);
-    // Even seconds of training on a coarse grid beat fixed centres.
+    // Even seconds of training on a coarse grid beat fixed centers.
     let rules = rules();
     let measure = |table| {
         let sweep = uniform_sweep(&rules, table, 5, 1, SEED).unwrap();

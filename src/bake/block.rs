@@ -23,10 +23,10 @@ pub struct Entry {
     pub rank_a: u16,
     /// B.
     pub rank_b: u16,
-    /// How many levels below the block's tile it is born, 0..=depth. It stays a tile centre, with the
+    /// How many levels below the block's tile it is born, 0..=depth. It stays a tile center, with the
     /// same rank, at every deeper level.
     pub born: u8,
-    /// Its offset from the block's centre in edges of the level of its birth, in the block's frame.
+    /// Its offset from the block's center in edges of the level of its birth, in the block's frame.
     pub offset: Cyclotomic,
 }
 
@@ -81,7 +81,7 @@ impl Block {
                             rank_a: u16::try_from(rank_a).map_err(|_| BakeError::Range)?,
                             rank_b: u16::try_from(rank_b).map_err(|_| BakeError::Range)?,
                             born,
-                            offset: child.centre,
+                            offset: child.center,
                         });
                     }
                     let (turn, classes) = match born {

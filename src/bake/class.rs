@@ -34,7 +34,7 @@ pub const fn class_count(generations: usize) -> Option<u32> {
 
 /// A tile's class over each number of generations, 0 ..= [`MAX_GENERATIONS`].
 ///
-/// Ancestors above a root are taken to be roots' centre chains: a root is its own grandparent's
+/// Ancestors above a root are taken to be roots' center chains: a root is its own grandparent's
 /// digit 0. Points relaxed that near a root are no sample of anything, so nothing depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Classes([u32; MAX_GENERATIONS + 1]);

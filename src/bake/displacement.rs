@@ -1,7 +1,7 @@
 //! Relaxed offsets: the data file, its validation, and the lookup that defines a relaxed point.
 //!
 //! A point accepted with threshold T has one level: N_m < T ≤ N_{m+1}. A point older than that is
-//! followed down its centre children to level m + 1, whose edge is the unit e; there it has classes
+//! followed down its center children to level m + 1, whose edge is the unit e; there it has classes
 //! ([`Classes`]) and a grandparent, in whose frame its vector is given. Where the importance has the
 //! local phase τ = T/N_m ∈ [1, δ], the vector is read from the *slots* either side of τ and
 //! interpolated linearly. Layers are zero at both ends, so levels join.

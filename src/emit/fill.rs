@@ -244,11 +244,11 @@ fn emit<K: Mode, I: Importance, S: Scalar, O: Output<Position: Position<Scalar =
         while next < sure {
             let most = sure - next;
             let (segment, end) = batch.segment(sampling.placement(), next, most);
-            let centres = segment.positions();
+            let centers = segment.positions();
             match steps {
-                None => output.write(*written, end - next, centres, to_world),
+                None => output.write(*written, end - next, centers, to_world),
                 Some(steps) => {
-                    output.write(*written, end - next, steps.moved(next, centres), to_world);
+                    output.write(*written, end - next, steps.moved(next, centers), to_world);
                 }
             }
             *written += end - next;

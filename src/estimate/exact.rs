@@ -61,7 +61,7 @@ impl From<SamplingError> for ExactError {
 /// the smaller rank. The choice depends on placement and importance alone.
 ///
 /// Weights are for the whole set: density is n·importance/∫importance where the importance knows its
-/// integral (the self-normalised weight), else importance × the density at which the next point would
+/// integral (the self-normalized weight), else importance × the density at which the next point would
 /// appear. For the first k points multiply weights by n/k. Both are biased by O(1/n).
 ///
 /// One walk that finds slightly more than n points, and a sort that knows how the keys are spread.

@@ -11,7 +11,7 @@
 //! | weight | bias | use |
 //! |---|---|---|
 //! | [`Weighting::Density`]: 1/density | none | running averages over many seeds; f that vanishes at the border |
-//! | the same, [normalised](normalise) by the count | O(1/n) | **one-shot estimates** where f resembles the importance: 10–30 % less error on environment maps |
+//! | the same, [normalized](normalize) by the count | O(1/n) | **one-shot estimates** where f resembles the importance: 10–30 % less error on environment maps |
 //! | [`Weighting::Smoothed`]: 2(1 − z)/density | none | smooth f: newest points count little, so that the edge of the set in rank is soft; free |
 //! | [`post_stratify`] | small (below half of the error) | n ≥ 256 on a pixel map: 2–10 × less error at 16k |
 //!
@@ -26,11 +26,11 @@
 //! | [`Warp`] | n | few accurate samples of a pixel map: the least error per sample, but no fixed sequence |
 //! | [`Placement::aligned`](crate::Placement::aligned) | expected n | constant importance: a complete level, as accurate as the best known sets |
 //!
-//! Fixed centres only: relaxed points are moved after acceptance, and these weights would be biased by 4
+//! Fixed centers only: relaxed points are moved after acceptance, and these weights would be biased by 4
 //! to 36 % on them. Asked for [`weighted`](crate::Sampling::weighted) points, a
 //! [relaxed](crate::Sampling::relaxed) sampling answers with
 //! [`SamplingError::Relaxed`](crate::SamplingError::Relaxed); everything else here takes fixed
-//! centres by itself. Under *constant* importance alone all points move by the same rule and stay
+//! centers by itself. Under *constant* importance alone all points move by the same rule and stay
 //! uniform: there equal weights, area/(expected number), are unbiased for relaxed points, too.
 
 mod exact;
@@ -45,4 +45,4 @@ pub use exact::{ExactError, exactly};
 pub use seamless::SeamlessSet;
 pub use stratified::post_stratify;
 pub use warp::Warp;
-pub use weighted::{Weighted, WeightedPoints, Weighting, normalise};
+pub use weighted::{Weighted, WeightedPoints, Weighting, normalize};

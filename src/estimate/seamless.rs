@@ -1,6 +1,6 @@
 //! A level of the tiling without borders: a square torus, evened out along the axes.
 //!
-//! The tiling of a level is a square-triangle tiling whose vertices are tile centres. Periodic ones exist,
+//! The tiling of a level is a square-triangle tiling whose vertices are tile centers. Periodic ones exist,
 //! too: the snub-square tiling 3².4.3.4 has only vertices of the types c and d, four to a square cell.
 //! (Subdividing it keeps the periods, but adds no merit here: deeper levels come in coarser numbers.)
 //! n/4 of its cells make a torus:
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn the_cell_is_the_snub_square_tilings() {
-        // Every vertex has five neighbours at the distance of an edge, 1/(2 cos 15°) of the side, at the
+        // Every vertex has five neighbors at the distance of an edge, 1/(2 cos 15°) of the side, at the
         // angles of 3².4.3.4.
         let edge = 1.0 / libm::sqrt(2.0 + SQRT_3);
         for vertex in VERTICES {

@@ -15,8 +15,8 @@ use crate::sampling::Limits;
 /// the map's (P. Clarberg et al., *Wavelet Importance Sampling*, 2005).
 ///
 /// From the whole map down to a pixel, the square is divided into upper and lower half in the ratio of
-/// their sums, then left and right, and each part is stretched to a half square. Neighbours stay
-/// neighbours but for the stretching, so that a set of low discrepancy keeps most of its merit: the
+/// their sums, then left and right, and each part is stretched to a half square. Neighbors stay
+/// neighbors but for the stretching, so that a set of low discrepancy keeps most of its merit: the
 /// least error per sample known for environment maps, with a seamless level of the tiling as well as
 /// with Owen-scrambled [Sobol](crate::light::Sobol) points. Pixels of importance 0 get no point.
 ///
@@ -53,11 +53,11 @@ impl<'m> Warp<'m> {
         let position = domain.min() + size * (DVec2::new(column as f64, row as f64) + at);
         // Rounding may carry a point to the next pixel, which may be 0, or out of the domain.
         let fits = |p: DVec2| self.map.texel(p) == (column, row) && domain.contains(p);
-        let centre = domain.min() + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
+        let center = domain.min() + size * DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
         if fits(position) {
             position
-        } else if domain.contains(centre) {
-            centre
+        } else if domain.contains(center) {
+            center
         } else {
             domain.min()
         }

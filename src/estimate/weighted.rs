@@ -102,11 +102,11 @@ impl<I: Importance> Iterator for WeightedPoints<'_, I> {
 impl<I: Importance> core::iter::FusedIterator for WeightedPoints<'_, I> {}
 
 /// Divides all weights by what they add up to against `expected`, the number of points expected
-/// ([`Sampling::expected_points`]): the self-normalised weights. Importance itself is then integrated
+/// ([`Sampling::expected_points`]): the self-normalized weights. Importance itself is then integrated
 /// without error, and an f that resembles it with little.
 ///
 /// Biased by O(1/n): the count and f vary together. Does nothing without points.
-pub fn normalise(points: &mut [Weighted], expected: f64) {
+pub fn normalize(points: &mut [Weighted], expected: f64) {
     let total: f64 = points.iter().map(|point| point.weight * point.density).sum();
     if total > 0.0 {
         let factor = expected / total;

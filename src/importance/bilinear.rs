@@ -1,4 +1,4 @@
-//! Importance from pixels, interpolated between their centres.
+//! Importance from pixels, interpolated between their centers.
 
 use glam::DVec2;
 
@@ -7,8 +7,8 @@ use super::{ImageMap, Importance};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
-/// An [`ImageMap`] read bilinearly: each pixel's value holds at its centre, and between four centres the
-/// importance is interpolated. Beyond the outermost centres the border pixels continue.
+/// An [`ImageMap`] read bilinearly: each pixel's value holds at its center, and between four centers the
+/// importance is interpolated. Beyond the outermost centers the border pixels continue.
 ///
 /// Smooth where the piecewise-constant map has steps, at about twice the cost of a value; a sharp
 /// detail is spread over two pixels. The integral over the map's domain is the same, Σ pixels.
@@ -72,7 +72,7 @@ impl Importance for BilinearMap {
         }
     }
 
-    /// The largest pixel whose centre is less than a pixel from the region: interpolation never
+    /// The largest pixel whose center is less than a pixel from the region: interpolation never
     /// exceeds the pixels it lies between.
     fn upper_bound(&self, region: &Disc) -> f64 {
         self.map.upper_bound(&self.widened(region))
@@ -122,18 +122,18 @@ mod tests {
             let domain =
                 Domain::new(DVec2::new(-3.0, 1e4), DVec2::new(5.0, 0.7)).unwrap();
             let map = BilinearMap::new(random(width, height, seed).map.over(domain));
-            let region = Disc { centre: domain.min() + domain.size() * DVec2::new(x, y), radius };
+            let region = Disc { center: domain.min() + domain.size() * DVec2::new(x, y), radius };
             let bounds = map.lower_bound(&region)..=map.upper_bound(&region);
             let mut random = SplitMix64::new(seed);
             for _ in 0..200 {
-                let at = region.centre + radius * DVec2::from_array(random.in_disc(0));
+                let at = region.center + radius * DVec2::from_array(random.in_disc(0));
                 prop_assert!(bounds.contains(&map.value(at)));
             }
         }
     }
 
     #[test]
-    fn pixels_hold_at_their_centres_and_means_between() {
+    fn pixels_hold_at_their_centers_and_means_between() {
         let map = random(4, 3, 2);
         let pixel = |x: usize, y: usize| f64::from(map.map.pixels()[y * 4 + x]);
         assert_eq!(map.value(DVec2::new(2.5, 1.5)), pixel(2, 1));

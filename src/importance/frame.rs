@@ -11,7 +11,7 @@ use glam::DVec3;
 /// direction the seam is, and whether coordinates are right-handed. With u from 0 at the left border
 /// to 1 at the right one, v from 0 above to 1 below, φ = 2πu and θ = πv:
 ///
-/// | name | direction | centre (u = ½) | right of it (u = ¾) | up | hand |
+/// | name | direction | center (u = ½) | right of it (u = ¾) | up | hand |
 /// |---|---|---|---|---|---|
 /// | [`PBRT`](Self::PBRT) | (sin θ cos φ, sin θ sin φ, cos θ) | −x | −y | +z | left |
 /// | [`MITSUBA`](Self::MITSUBA) | (sin θ sin φ, cos θ, −sin θ cos φ) | +z | −x | +y | right |
@@ -22,7 +22,7 @@ use glam::DVec3;
 /// ```
 /// use glam::DVec3;
 /// use twelvefold::light::Frame;
-/// // What lies right of the image's centre in pbrt's coordinates, in Blender's: as seen from within.
+/// // What lies right of the image's center in pbrt's coordinates, in Blender's: as seen from within.
 /// let right = Frame::PBRT.to_image(DVec3::NEG_Y);
 /// assert_eq!(Frame::BLENDER.to_world(right), DVec3::NEG_Y);
 /// assert_eq!(Frame::BLENDER.rotated(90.0).to_world(right), DVec3::X);
@@ -43,19 +43,19 @@ impl Frame {
     /// `src/pbrt/util/vecmath.h`).
     pub const PBRT: Self = Self { seam: DVec3::X, quarter: DVec3::Y, up: DVec3::Z };
 
-    /// Mitsuba 3's `envmap`: y up, right-handed, the image's centre is +z. The same as
+    /// Mitsuba 3's `envmap`: y up, right-handed, the image's center is +z. The same as
     /// [`OPENEXR`](Self::OPENEXR).
     ///
     /// `src/emitters/envmap.cpp`: u = atan2(x, −z) / 2π, v = acos(y) / π.
     pub const MITSUBA: Self = Self::OPENEXR;
 
-    /// Blender's and Cycles' environment texture: z up, right-handed, the image's centre is +x.
+    /// Blender's and Cycles' environment texture: z up, right-handed, the image's center is +x.
     ///
     /// `intern/cycles/kernel/camera/projection.h`: `direction_to_equirectangular` is
     /// u = (atan2(y, x) − π) / −2π, and v = (acos z − π) / −π from below.
     pub const BLENDER: Self = Self { seam: DVec3::NEG_X, quarter: DVec3::Y, up: DVec3::Z };
 
-    /// glTF's tools and three.js: y up, right-handed, the image's centre is +x.
+    /// glTF's tools and three.js: y up, right-handed, the image's center is +x.
     ///
     /// glTF itself has no such images; Khronos' glTF-IBL-Sampler reads them with
     /// u = ½ + atan2(z, x) / 2π (`dirToUV` in `lib/shaders/filter.frag`), as does three.js
@@ -63,10 +63,10 @@ impl Frame {
     pub const GLTF: Self = Self { seam: DVec3::NEG_X, quarter: DVec3::NEG_Z, up: DVec3::Y };
 
     /// OpenEXR's latitude–longitude maps, and USD's `DomeLight`, which quotes them: y up,
-    /// right-handed, the image's centre is +z.
+    /// right-handed, the image's center is +z.
     ///
     /// `ImfEnvmap.h`: longitude falls from π at the left to −π at the right; longitude 0 is +z and
-    /// π/2 is +x. (OpenEXR puts the *centres* of the outermost pixels on the seam and the poles; here, as
+    /// π/2 is +x. (OpenEXR puts the *centers* of the outermost pixels on the seam and the poles; here, as
     /// in all the renderers, their outer borders lie there: half a pixel's difference.)
     pub const OPENEXR: Self = Self { seam: DVec3::NEG_Z, quarter: DVec3::X, up: DVec3::Y };
 
@@ -191,15 +191,15 @@ mod tests {
             (Frame::GLTF, DVec3::X, DVec3::Z, DVec3::Y, false),
             (Frame::OPENEXR, DVec3::Z, DVec3::NEG_X, DVec3::Y, false),
         ];
-        for (frame, centre, right, up, left_handed) in table {
-            assert_eq!(frame.to_world(DVec3::NEG_X), centre);
+        for (frame, center, right, up, left_handed) in table {
+            assert_eq!(frame.to_world(DVec3::NEG_X), center);
             assert_eq!(frame.to_world(DVec3::NEG_Y), right);
             assert_eq!(frame.to_world(DVec3::Y), -right);
             assert_eq!(frame.to_world(DVec3::Z), up);
-            assert_eq!(frame.to_world(DVec3::X), -centre);
+            assert_eq!(frame.to_world(DVec3::X), -center);
             assert_eq!(frame.is_left_handed(), left_handed);
-            // Unmirrored: looking at the centre, right is where a right hand says, or a left one.
-            let hand = if left_handed { up.cross(centre) } else { centre.cross(up) };
+            // Unmirrored: looking at the center, right is where a right hand says, or a left one.
+            let hand = if left_handed { up.cross(center) } else { center.cross(up) };
             assert_eq!(hand, right);
         }
     }

@@ -240,7 +240,7 @@ impl ImageMap {
     #[inline]
     fn under(&self, region: &Disc) -> (Texels<'_>, [u32; 2], [u32; 2]) {
         let (mut low, mut high) = ([[0; 2]], [[0; 2]]);
-        let Disc { centre: DVec2 { x, y }, radius } = *region;
+        let Disc { center: DVec2 { x, y }, radius } = *region;
         let shift = self.lattice.spans(DVec2::ZERO, &[x], &[y], radius, &mut low, &mut high);
         (self.extremes.level(&self.pixels, self.lattice.width, shift), low[0], high[0])
     }

@@ -70,7 +70,7 @@ pub trait Importance {
     #[inline]
     fn upper_bounds(&self, origin: DVec2, x: &[f64], y: &[f64], radius: f64, bounds: &mut [f64]) {
         for ((bound, x), y) in bounds.iter_mut().zip(x).zip(y) {
-            *bound = self.upper_bound(&Disc { centre: origin + DVec2::new(*x, *y), radius });
+            *bound = self.upper_bound(&Disc { center: origin + DVec2::new(*x, *y), radius });
         }
     }
 
@@ -106,15 +106,15 @@ pub trait Importance {
         }
     }
 
-    /// Relaxed points only: where a point ends up. Its tile's centre is `centre`, its rank is accepted
+    /// Relaxed points only: where a point ends up. Its tile's center is `center`, its rank is accepted
     /// where the importance is above `needed`, and relaxation would move it to `moved`; both are places
     /// of the domain. Never where the
-    /// importance is 0: by default, back towards the centre until it is not. Importance with hard edges
+    /// importance is 0: by default, back towards the center until it is not. Importance with hard edges
     /// keeps points on their side. Not farther from `moved` than
-    /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `centre`.
-    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+    /// [`longest_constraint`](Self::longest_constraint), unless between `moved` and `center`.
+    fn constrain(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let _ = needed;
-        retreat(centre, moved, |at| self.value(at) > 0.0)
+        retreat(center, moved, |at| self.value(at) > 0.0)
     }
 
     /// Which moved points may stay: 1 for each place `(x[i], y[i])` at which
@@ -130,7 +130,7 @@ pub trait Importance {
     }
 
     /// The farthest that [`constrain`](Self::constrain) takes a point away from where relaxation moved it, in
-    /// units, other than towards its centre. 0: it is asked only where
+    /// units, other than towards its center. 0: it is asked only where
     /// [`lower_bound`](Self::lower_bound) is 0.
     fn longest_constraint(&self) -> f64 {
         0.0
@@ -151,17 +151,17 @@ pub trait Importance {
     }
 }
 
-/// Parts of the way from its centre that a point goes that may not go all of it.
+/// Parts of the way from its center that a point goes that may not go all of it.
 const WAYS: [f64; 3] = [0.75, 0.5, 0.25];
 
-/// The farthest of some places on the way from `centre` to `moved` where a point may lie; the centre if
+/// The farthest of some places on the way from `center` to `moved` where a point may lie; the center if
 /// there is no other.
-fn retreat(centre: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
+fn retreat(center: DVec2, moved: DVec2, may_lie: impl Fn(DVec2) -> bool) -> DVec2 {
     if may_lie(moved) {
         return moved;
     }
-    let places = WAYS.iter().map(|way| centre + (moved - centre) * *way);
-    places.into_iter().find(|at| may_lie(*at)).unwrap_or(centre)
+    let places = WAYS.iter().map(|way| center + (moved - center) * *way);
+    places.into_iter().find(|at| may_lie(*at)).unwrap_or(center)
 }
 
 /// What a reference does: everything that it refers to.
@@ -211,8 +211,8 @@ macro_rules! forward {
         }
 
         #[inline]
-        fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-            (**self).constrain(centre, moved, needed)
+        fn constrain(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+            (**self).constrain(center, moved, needed)
         }
 
         #[inline(always)]

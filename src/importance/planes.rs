@@ -216,7 +216,7 @@ impl Sums {
         })
     }
 
-    /// A box about a pixel's centre, clipped to the rows, which hold it but for the image's border.
+    /// A box about a pixel's center, clipped to the rows, which hold it but for the image's border.
     #[inline]
     fn cut(&self, [x, y]: [usize; 2], half: f64) -> Cut {
         let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
@@ -242,7 +242,7 @@ impl Sums {
     }
 
     /// The means over the four boxes of which a pixel is the corner, and which reach `half` from its
-    /// centre.
+    /// center.
     fn quadrants(&self, at: [usize; 2], half: f64) -> [[f64; 2]; 4] {
         let (pixel, all) = (self.cut(at, 0.5), self.cut(at, half.max(0.5)));
         core::array::from_fn(|k| {

@@ -7,7 +7,7 @@ use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
 /// An importance whose upper bounds are not proven but probed: the largest value at seven points of a
-/// region, its centre and six around it.
+/// region, its center and six around it.
 ///
 /// For functions without a known bound. A peak between the probes is missed: the points on it that
 /// rank after what the probes promised are lost, without an error. Measured on maps of 1024 × 1024
@@ -29,7 +29,7 @@ impl<I: Importance> Probed<I> {
     }
 }
 
-/// The centre, and a hexagon at two thirds of the radius: (cos, sin) of 15° + k·60°, times 2/3.
+/// The center, and a hexagon at two thirds of the radius: (cos, sin) of 15° + k·60°, times 2/3.
 const PROBES: [DVec2; 7] = [
     DVec2::new(0.0, 0.0),
     DVec2::new(0.643_950_551, 0.172_546_030),
@@ -48,7 +48,7 @@ impl<I: Importance> Importance for Probed<I> {
     fn upper_bound(&self, region: &Disc) -> f64 {
         let (min, max) = (self.domain.min(), self.domain.max());
         let value = |probe: &DVec2| {
-            self.importance.value((region.centre + region.radius * *probe).max(min).min(max))
+            self.importance.value((region.center + region.radius * *probe).max(min).min(max))
         };
         self.headroom * PROBES.iter().map(value).fold(0.0, f64::max)
     }
@@ -75,8 +75,8 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.surroundings(x, y, local, detail);
     }
 
-    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
-        self.importance.constrain(centre, moved, needed)
+    fn constrain(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+        self.importance.constrain(center, moved, needed)
     }
 
     #[inline(always)]

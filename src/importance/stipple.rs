@@ -217,11 +217,11 @@ impl Importance for StippleMap {
         }
     }
 
-    fn constrain(&self, centre: DVec2, moved: DVec2, needed: f64) -> DVec2 {
+    fn constrain(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         if needed < self.accepted_at(moved) {
             return moved;
         }
-        let tone = self.accepted_at(centre);
+        let tone = self.accepted_at(center);
         let may_lie = |p: DVec2| {
             let there = self.accepted_at(p);
             needed < there || (there > 0.0 && there >= SAME_SIDE * tone)
@@ -229,7 +229,7 @@ impl Importance for StippleMap {
         if may_lie(moved) {
             return moved;
         }
-        let step = moved - centre;
+        let step = moved - center;
         let length = libm::sqrt(step.x * step.x + step.y * step.y).min(self.scales.largest);
         let reach = (0.5 * self.scales.spacing(tone)).max(0.75);
         let mut inward = DVec2::ZERO;
@@ -246,8 +246,8 @@ impl Importance for StippleMap {
                 }
             }
         }
-        match retreat(centre, moved, may_lie) {
-            p if p == centre => p,
+        match retreat(center, moved, may_lie) {
+            p if p == center => p,
             p => self.within_pixel(p),
         }
     }
@@ -310,13 +310,13 @@ mod tests {
             };
             let size = DVec2::new(width as f64, height as f64);
             for _ in 0..400 {
-                let centre = place(0.5 * size, size + 3.0);
-                let moved = place(centre, DVec2::splat(8.0));
-                let value = map.value(centre);
+                let center = place(0.5 * size, size + 3.0);
+                let moved = place(center, DVec2::splat(8.0));
+                let value = map.value(center);
                 for needed in [0.0, 0.3 * value, value.next_down()] {
                     if value > 0.0 {
-                        let [x, y] = map.pixel(map.constrain(centre, moved, needed));
-                        assert!(pixels[y * width + x] > 0.0, "{centre} {moved} {needed}");
+                        let [x, y] = map.pixel(map.constrain(center, moved, needed));
+                        assert!(pixels[y * width + x] > 0.0, "{center} {moved} {needed}");
                     }
                 }
             }

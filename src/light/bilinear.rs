@@ -1,4 +1,4 @@
-//! Pixels interpolated between their centres, over the seam and the poles, and sampled exactly.
+//! Pixels interpolated between their centers, over the seam and the poles, and sampled exactly.
 //!
 //! Within a pixel, interpolated luminance is one bilinear function in each quarter, and solid angle is
 //! uniform (cos θ is linear within a row). So a pixel's share of the light is a weighted sum of nine
@@ -6,7 +6,7 @@
 //! then the same across.
 //!
 //! ```text
-//!   a───────b───────c      values at the centres of nine pixels;
+//!   a───────b───────c      values at the centers of nine pixels;
 //!   │   ┌───┼───┐   │      the middle one has the four quarters
 //!   d───┼───e───┼───f      around e, whose corners are e, the mean of
 //!   │   └───┼───┘   │      e and b, that of e, a, b and d, …
@@ -18,7 +18,7 @@ use glam::DVec2;
 use crate::estimate::sums::BELOW_ONE;
 use crate::importance::{EnvironmentMap, luminance};
 
-/// Luminance at the centres of a pixel and its eight neighbours, row by row.
+/// Luminance at the centers of a pixel and its eight neighbors, row by row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch([[f64; 3]; 3]);
 
@@ -37,7 +37,7 @@ fn around((width, height): (usize, usize), column: usize, row: usize) -> [[usize
     [above, index(row, columns), below]
 }
 
-/// The share of each of three centres in the interpolated value at `at` from the middle's border, in
+/// The share of each of three centers in the interpolated value at `at` from the middle's border, in
 /// [0, 1).
 fn shares(at: f64) -> [f64; 3] {
     let before = (0.5 - at).max(0.0);
@@ -106,14 +106,14 @@ impl Patch {
     }
 }
 
-/// The values at the pixel's borders and its centre: between them the density is linear.
+/// The values at the pixel's borders and its center: between them the density is linear.
 fn knots([before, middle, after]: [f64; 3]) -> [f64; 3] {
     [0.5 * (before + middle), middle, 0.5 * (middle + after)]
 }
 
 /// The place in [0, 1) below which lies the part u of the density that is linear between its knots.
-fn find(centres: [f64; 3], u: f64) -> f64 {
-    let [start, middle, end] = knots(centres);
+fn find(centers: [f64; 3], u: f64) -> f64 {
+    let [start, middle, end] = knots(centers);
     // Twice the areas of the halves, in half pixels.
     let (first, second) = (start + middle, middle + end);
     let along = u * (first + second);
@@ -125,8 +125,8 @@ fn find(centres: [f64; 3], u: f64) -> f64 {
 }
 
 /// The inverse of [`find`].
-fn trace(centres: [f64; 3], at: f64) -> f64 {
-    let [start, middle, end] = knots(centres);
+fn trace(centers: [f64; 3], at: f64) -> f64 {
+    let [start, middle, end] = knots(centers);
     let (first, second) = (start + middle, middle + end);
     // The part of a ramp's area before t: t(2a + t(b − a)) / (a + b).
     let before = |a: f64, b: f64, t: f64| t * (2.0 * a + t * (b - a));
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_lie_beyond_the_seam_and_the_poles() {
+    fn neighbors_lie_beyond_the_seam_and_the_poles() {
         assert_eq!(around((8, 4), 0, 0), [[3, 4, 5], [7, 0, 1], [15, 8, 9]]);
         assert_eq!(around((8, 4), 7, 3), [[22, 23, 16], [30, 31, 24], [26, 27, 28]]);
         assert_eq!(around((1, 1), 0, 0), [[0; 3]; 3]);

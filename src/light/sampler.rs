@@ -10,14 +10,14 @@ use super::sobol::Sobol;
 use crate::estimate::sums::{Cell, SumPyramid};
 use crate::importance::{EnvironmentMap, EnvironmentSample, importance_of};
 
-/// How a renderer reads a map between its pixels' centres.
+/// How a renderer reads a map between its pixels' centers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Filter {
     /// A pixel's radiance holds over the whole pixel.
     #[default]
     Nearest,
-    /// Radiance is interpolated linearly between the centres of pixels, over the seam and across the poles.
+    /// Radiance is interpolated linearly between the centers of pixels, over the seam and across the poles.
     Bilinear,
 }
 
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lamps_neighbours_are_sampled_where_interpolation_lights_them() {
+    fn a_lamps_neighbors_are_sampled_where_interpolation_lights_them() {
         let mut pixels = alloc::vec![[0.0f32; 3]; 32];
         pixels[8] = [1.0; 3];
         let map = EnvironmentMap::new(8, 4, pixels, InvalidPixels::Reject).unwrap();

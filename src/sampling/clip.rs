@@ -54,8 +54,8 @@ impl Clip {
     #[inline(always)]
     pub(crate) fn touches(&self, region: &Disc) -> bool {
         // Corner by corner, for a clip outside the domain, whose corners are the wrong way round.
-        let nearest = region.centre.min(self.max).max(self.min);
-        nearest.distance_squared(region.centre) <= region.radius * region.radius
+        let nearest = region.center.min(self.max).max(self.min);
+        nearest.distance_squared(region.center) <= region.radius * region.radius
     }
 
     /// The least and the greatest corner of the clip with a margin around it.
@@ -67,7 +67,7 @@ impl Clip {
     /// Whether all points in the disc lie in the clip.
     #[inline(always)]
     pub(crate) fn holds(&self, region: &Disc) -> bool {
-        let (low, high) = (region.centre - region.radius, region.centre + region.radius);
+        let (low, high) = (region.center - region.radius, region.center + region.radius);
         low.cmpge(self.inner_min).all() && high.cmplt(self.inner_max).all()
     }
 }

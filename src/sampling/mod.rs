@@ -132,7 +132,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
     /// density.
     ///
     /// For pictures, scattering and the like. Not for integration: a point is accepted by the density
-    /// at its fixed centre and then moved, so that 1/density at the moved point is a biased weight
+    /// at its fixed center and then moved, so that 1/density at the moved point is a biased weight
     /// (by 4 % and more), which is why [`weighted`](Self::weighted) refuses. Not progressive either: a
     /// point's place depends on the density around it. Ranks stay what they are. Where fewer than some four
     /// points are expected in a whole domain, points stay at their centers.
@@ -227,12 +227,12 @@ impl<'a, I: Importance> Sampling<'a, I> {
         region: &Disc,
     ) -> Result<u64, SamplingError> {
         if !(bound >= 0.0 && bound.is_finite()) {
-            return Err(SamplingError::InvalidBound { near: region.centre, bound });
+            return Err(SamplingError::InvalidBound { near: region.center, bound });
         }
         let limit = self.scale.limit(bound);
         let deepest = TileCounts::HEXAGON.all()[MAX_LEVEL];
         if limit > deepest {
-            return Err(SamplingError::TooDense { near: region.centre });
+            return Err(SamplingError::TooDense { near: region.center });
         }
         Ok(limit)
     }

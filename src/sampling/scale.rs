@@ -70,7 +70,7 @@ impl RankScale {
     pub(crate) fn accepts(self, rank: u64, value: f64) -> bool {
         let limit = self.limit_before_rounding(value);
         // An integer below 2⁵³ is exact as f64, so that comparing there is comparing the integers:
-        // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbour, but so coarse a
+        // k < x exactly when k < ⌈x⌉. Ranks past that round to an even neighbor, but so coarse a
         // limit is an integer itself.
         if rank < 1 << 53 { (rank as i64 as f64) < limit } else { rank < self.limit(value) }
     }

@@ -16,7 +16,7 @@ pub(crate) const RUN: usize = 64;
 /// Slots that are found by comparing with each.
 const FEW_SLOTS: usize = 4;
 
-/// Relaxed offsets: vectors by structural class and density phase, that turn the fixed centres of any
+/// Relaxed offsets: vectors by structural class and density phase, that turn the fixed centers of any
 /// density into an even set. See [`Displacements`] for what they mean; this is the same, read in place.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplacementTable<'a> {

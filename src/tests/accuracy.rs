@@ -138,8 +138,8 @@ fn born(node: &Node, tables: &Tables<'_>, i: usize) -> (u8, ExactPoint) {
     let block = tables.block(node.kind);
     let levels = (0..=usize::from(tables.depth())).find(|j| i < block.born_before(j + 1)).unwrap();
     let offset = block.offset(usize::from(node.rotation % 3), i);
-    let centre = (0..levels).fold(node.centre, |centre, _| centre.finer());
-    (node.level + levels as u8, centre.plus(offset.turned_back(4 - node.rotation / 3)))
+    let center = (0..levels).fold(node.center, |center, _| center.finer());
+    (node.level + levels as u8, center.plus(offset.turned_back(4 - node.rotation / 3)))
 }
 
 #[test]

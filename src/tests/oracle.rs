@@ -16,7 +16,7 @@ use crate::sampling::Sampling;
 use crate::tiling::numbers::SQRT_3;
 use crate::tiling::{Cyclotomic, FCode, MAX_LEVEL, Rules, Tile, TileCounts, TileType};
 
-/// A tile, its rank, where its centre was born (level and coordinates), and what it was, and what
+/// A tile, its rank, where its center was born (level and coordinates), and what it was, and what
 /// its ancestors were, at each level: classes and rotation.
 #[derive(Clone, Copy)]
 struct Found {
@@ -92,18 +92,18 @@ fn starts<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<Found> {
         }
         (tile, path)
     };
-    let at = known.centre;
+    let at = known.center;
     let shift =
-        from_exact(at.u, at.v, at.p, at.q).checked_sub(path_to(known.rank).0.centre).unwrap();
+        from_exact(at.u, at.v, at.p, at.q).checked_sub(path_to(known.rank).0.center).unwrap();
     let half_edge = placement.half_edge(FRONTIER_LEVEL);
     let middle = 0.5 * placement.domain().size() - placement.origin();
     (0..TileCounts::HEXAGON.at(level).unwrap())
         .filter_map(|rank| {
             let (mut tile, path) = path_to(rank);
-            tile.centre = tile.centre.checked_add(shift).unwrap();
-            let centre = 2.0 * half_edge.rotate(DVec2::from(tile.centre.to_f64()));
-            let near = centre.distance(middle) < 2.5 * 2.0 * half_edge.length();
-            let at_birth = tile.centre;
+            tile.center = tile.center.checked_add(shift).unwrap();
+            let center = 2.0 * half_edge.rotate(DVec2::from(tile.center.to_f64()));
+            let near = center.distance(middle) < 2.5 * 2.0 * half_edge.length();
+            let at_birth = tile.center;
             near.then_some(Found { tile, rank, born: FRONTIER_LEVEL, at_birth, path })
         })
         .collect()
@@ -162,14 +162,14 @@ fn descend(rules: &Rules, from: Found, level: u8, deepest: u8, found: &mut Vec<F
                 tile,
                 rank: 13 * tiles + from.rank - before,
                 born: level + 1,
-                at_birth: tile.centre,
+                at_birth: tile.center,
                 path,
             },
             _ => Found {
                 tile,
                 rank: u64::from(digit) * tiles + from.rank,
                 born: level + 1,
-                at_birth: tile.centre,
+                at_birth: tile.center,
                 path,
             },
         };
@@ -310,8 +310,8 @@ mod tests {
             let bump = Function::new(
                 |p: DVec2| p.x * p.x * (1.0 - p.y).max(0.0),
                 |r: &crate::Disc| {
-                    let x = (r.centre.x.abs() + r.radius).min(1.0);
-                    x * x * (1.0 - (r.centre.y - r.radius)).clamp(0.0, 1.0)
+                    let x = (r.center.x.abs() + r.radius).min(1.0);
+                    x * x * (1.0 - (r.center.y - r.radius)).clamp(0.0, 1.0)
                 },
             );
             let sampling = Sampling::new(&placement, &bump, Amount::Density(6.0 * count)).unwrap();
@@ -362,7 +362,7 @@ mod tests {
             let tables = Tables::from_bytes(&bytes).unwrap();
             let placement = Placement::new_in(domain, seed, tables);
             let frontier: Vec<_> = placement.frontier().collect();
-            // Find the absolute centre of one frontier tile by its rank, then compare all.
+            // Find the absolute center of one frontier tile by its rank, then compare all.
             let h = placement.half_edge(FRONTIER_LEVEL);
             let place = |z: Cyclotomic| 2.0 * h.rotate(DVec2::from(z.to_f64()));
             let by_rank = |rank| {
@@ -372,18 +372,18 @@ mod tests {
                     .unwrap()
             };
             let first = by_rank(frontier[0].rank);
-            let expected = frontier[0].centre;
+            let expected = frontier[0].center;
             let shift = placement.origin()
                 + 2.0
                     * h.rotate(DVec2::from(
                         from_exact(expected.u, expected.v, expected.p, expected.q).to_f64(),
                     ))
-                - place(first.centre);
+                - place(first.center);
             let reach = REACH * 2.0 * h.length();
             let touching = level
                 .iter()
                 .filter(|t| {
-                    let c = place(t.centre) + shift;
+                    let c = place(t.center) + shift;
                     c.distance(0.5 * domain.size()) <= reach + 0.5 * domain.diagonal()
                 })
                 .count();

@@ -1,14 +1,14 @@
 //! How a star derives the children of its tile (the paper's missing Figure 3).
 //!
-//! A tile is a vertex of the square-triangle tiling; one subdivision multiplies its centre by λ and
+//! A tile is a vertex of the square-triangle tiling; one subdivision multiplies its center by λ and
 //! surrounds it with a dodecagon of new vertices. In the parent's frame, offsets in child edges, o the
 //! parent's parity:
 //!
-//! 1. the centre: type `a`, offset 0, rotation (o + 1) mod 2;
+//! 1. the center: type `a`, offset 0, rotation (o + 1) mod 2;
 //! 2. the inner hexagon, for each j ≡ o + 1 (mod 2): type `c`, offset ζ^j, rotation j + 4;
 //! 3. for each star edge k: the vertex ζ^k + ζ^(k+1); type `b`, rotation k, if k ≡ o (mod 2), otherwise
 //!    type `d`, rotation k + 7. The other end of that dodecagon side, ζ^(k−1) + ζ^k, belongs to the
-//!    neighbour across edge k: each tile keeps its left one, so every shared vertex has one owner;
+//!    neighbor across edge k: each tile keeps its left one, so every shared vertex has one owner;
 //! 4. for each square corner (star edges k and k + 3): the vertex ζ^(k+1) + ζ^(k+2), type `d`,
 //!    rotation k + 8 if k ≡ o (mod 2), otherwise k + 3.
 
@@ -25,7 +25,7 @@ pub struct Child {
     pub kind: TileType,
     /// Rotation relative to the parent's, in units of 30°, 0..12.
     pub rotation: u8,
-    /// Centre relative to λ times the parent's centre, in child edges, for an unrotated parent.
+    /// Center relative to λ times the parent's center, in child edges, for an unrotated parent.
     pub offset: Cyclotomic,
 }
 
@@ -34,7 +34,7 @@ impl Child {
     pub(super) const NONE: Self = Self { kind: TileType::A, rotation: 0, offset: Cyclotomic::ZERO };
 }
 
-/// The children of a type in derivation order: centre; inner hexagon by ascending j; star edges by
+/// The children of a type in derivation order: center; inner hexagon by ascending j; star edges by
 /// ascending k; square corners by their first edge. The second value is how many there are.
 #[must_use]
 pub fn children_in_derivation_order(parent: TileType) -> ([Child; MAX_CHILDREN], usize) {

@@ -1,6 +1,6 @@
 //! Exact plane coordinates: the ring Z\[ζ\], ζ = e^(iπ/6).
 //!
-//! Every tile centre is an integer combination of 1, ζ, ζ², ζ³ (ζ⁴ = ζ² − 1), in units of the edge of
+//! Every tile center is an integer combination of 1, ζ, ζ², ζ³ (ζ⁴ = ζ² − 1), in units of the edge of
 //! its own level. Going one level down multiplies by λ = 2 + √3, which is a unit of the ring, so no
 //! rounding ever happens.
 

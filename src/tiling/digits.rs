@@ -83,7 +83,7 @@ pub enum DigitsError {
     GroupLength {
         /// The line.
         line: usize,
-        /// The group, from 0: centre, inner hexagon, star edges, square corners.
+        /// The group, from 0: center, inner hexagon, star edges, square corners.
         group: usize,
         /// How many digits the geometry asks for.
         expected: usize,
@@ -134,7 +134,7 @@ impl fmt::Display for DigitsError {
                 write!(f, "line {line}, column {column}: not a digit 0-9 or A-D")
             }
             Self::GroupLength { line, group, expected, found } => {
-                let name = ["centre", "inner hexagon", "star edges", "square corners"]
+                let name = ["center", "inner hexagon", "star edges", "square corners"]
                     .get(*group)
                     .unwrap_or(&"past the square corners");
                 write!(

@@ -7,7 +7,7 @@
 //! rank(child) = 13·N_m + rank(parent) − N_{m−1}       for d = D,
 //!
 //! because an `a` tile has no D child and the `a` tiles of level m are exactly the first N_{m−1} ranks.
-//! A tile's centre child keeps its rank, so a rank is a fixed index into one endless sequence.
+//! A tile's center child keeps its rank, so a rank is a fixed index into one endless sequence.
 
 use super::counts::{MAX_LEVEL, RankError, TileCounts};
 use super::cyclotomic::OutOfRange;
@@ -79,7 +79,7 @@ impl FCode {
         Ok(Self::from_valid_newest_first(root, &newest_first[..level]))
     }
 
-    /// The tile with this code: type, rotation, exact centre. O(levels).
+    /// The tile with this code: type, rotation, exact center. O(levels).
     ///
     /// # Errors
     /// [`OutOfRange`] cannot happen for the at most [`MAX_LEVEL`] levels of a code; it is passed on

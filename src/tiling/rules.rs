@@ -54,7 +54,7 @@ impl Rules {
         Ok(Some(Tile {
             kind: child.kind,
             rotation: (tile.rotation % 12 + child.rotation) % 12,
-            centre: tile.centre.checked_mul_lambda()?.checked_add(offset)?,
+            center: tile.center.checked_mul_lambda()?.checked_add(offset)?,
         }))
     }
 }

@@ -45,7 +45,7 @@ impl TileType {
     }
 
     /// Directions k·30° of the edges of the square-triangle tiling at this vertex, ascending, in the
-    /// tile's own frame. Neighbouring directions 2 apart span a triangle, 3 apart a square.
+    /// tile's own frame. Neighboring directions 2 apart span a triangle, 3 apart a square.
     #[must_use]
     pub const fn star(self) -> &'static [u8] {
         match self {
@@ -85,7 +85,7 @@ impl TileType {
     }
 }
 
-/// A tile of one level: type, rotation in multiples of 30° (0..12), and exact centre in edges of its
+/// A tile of one level: type, rotation in multiples of 30° (0..12), and exact center in edges of its
 /// own level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tile {
@@ -93,14 +93,14 @@ pub struct Tile {
     pub kind: TileType,
     /// Counter-clockwise rotation of the tile's frame, in units of 30°, 0..12.
     pub rotation: u8,
-    /// The centre, in edges of the tile's level, relative to the root's centre.
-    pub centre: Cyclotomic,
+    /// The center, in edges of the tile's level, relative to the root's center.
+    pub center: Cyclotomic,
 }
 
 impl Tile {
     /// The root tile of the given type: unrotated, at the origin.
     #[must_use]
     pub const fn root(kind: TileType) -> Self {
-        Self { kind, rotation: 0, centre: Cyclotomic::ZERO }
+        Self { kind, rotation: 0, center: Cyclotomic::ZERO }
     }
 }

@@ -47,10 +47,10 @@ impl<S: Scalar> Frame<S> {
     }
 }
 
-/// Candidates of one block that are born at the same level: one frame, one centre, a run of offsets.
+/// Candidates of one block that are born at the same level: one frame, one center, a run of offsets.
 pub(crate) struct Segment<'t, S> {
     pub(crate) frame: Frame<S>,
-    pub(crate) centre: ExactPoint,
+    pub(crate) center: ExactPoint,
     pub(crate) offsets: Offsets<'t>,
 }
 
@@ -59,7 +59,7 @@ impl<'t, S: Scalar> Segment<'t, S> {
     #[inline(always)]
     pub(crate) fn new(
         frame: Frame<S>,
-        centre: ExactPoint,
+        center: ExactPoint,
         offsets: &Offsets<'t>,
         range: Range<usize>,
     ) -> Self {
@@ -70,18 +70,18 @@ impl<'t, S: Scalar> Segment<'t, S> {
             p: &p[range.clone()],
             q: &q[range],
         };
-        Self { frame, centre, offsets }
+        Self { frame, center, offsets }
     }
 
     /// The positions, relative to the domain's least corner. A plain loop over four arrays of one
     /// length, which compilers turn into vector instructions.
     #[inline(always)]
     pub(crate) fn positions(&self) -> impl Iterator<Item = [S; 2]> {
-        let Self { frame, centre, offsets: Offsets { u, v, p, q } } = *self;
+        let Self { frame, center, offsets: Offsets { u, v, p, q } } = *self;
         let field = |bytes: [u8; 2]| i32::from(i16::from_le_bytes(bytes));
         u.iter().zip(v).zip(p).zip(q).map(move |(((u, v), p), q)| {
             let offset = ExactPoint { u: field(*u), v: field(*v), p: field(*p), q: field(*q) };
-            frame.position(centre.plus(offset))
+            frame.position(center.plus(offset))
         })
     }
 

@@ -11,16 +11,16 @@ pub(crate) struct Node {
     pub(crate) rotation: u8,
     /// Levels below the root.
     pub(crate) level: u8,
-    /// The centre in edges of `level`.
-    pub(crate) centre: ExactPoint,
+    /// The center in edges of `level`.
+    pub(crate) center: ExactPoint,
     pub(crate) rank: u64,
 }
 
 impl Node {
     /// The root `a`, unrotated at the origin.
     pub(crate) const fn root() -> Self {
-        let centre = ExactPoint { u: 0, v: 0, p: 0, q: 0 };
-        Self { kind: TileType::A, rotation: 0, level: 0, centre, rank: 0 }
+        let center = ExactPoint { u: 0, v: 0, p: 0, q: 0 };
+        Self { kind: TileType::A, rotation: 0, level: 0, center, rank: 0 }
     }
 
     /// The rank of a descendant from its coefficients (A, B): rank + A·N_m − B·N_{m−1}, m the node's level.
@@ -37,7 +37,7 @@ impl Node {
         let turned = self.rotation + turn;
         let rotation = if turned < 12 { turned } else { turned - 12 };
         let block = tables.block(self.kind);
-        // Entry 0 of a block is its own centre, with offset 0 and the tile's own rank.
+        // Entry 0 of a block is its own center, with offset 0 and the tile's own rank.
         let offset = block.offset(usize::from(self.rotation % 3), digit);
         // Three quarter turns back are one forward, and so on.
         let offset = offset.turned_back(4 - self.rotation / 3);
@@ -45,7 +45,7 @@ impl Node {
             kind,
             rotation,
             level: self.level + 1,
-            centre: self.centre.finer().plus(offset),
+            center: self.center.finer().plus(offset),
             rank: self.rank_of(block.rank_coefficients(digit)),
         })
     }

@@ -95,8 +95,8 @@ impl ClassFormula {
         }
     }
 
-    /// Of the centre of `node`, `below` levels below it: the end of a chain of centre children.
-    pub(crate) fn of_centre(
+    /// Of the center of `node`, `below` levels below it: the end of a chain of center children.
+    pub(crate) fn of_center(
         tables: &Tables<'_>,
         ancestry: &Ancestry,
         node: &Node,

@@ -10,7 +10,7 @@ use crate::tree::node::Node;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidates {
     pub(crate) node: Node,
-    /// 1, or 0 with `end` 1 for the centre of a tile of the frontier.
+    /// 1, or 0 with `end` 1 for the center of a tile of the frontier.
     pub(crate) start: usize,
     pub(crate) end: usize,
     /// Every candidate lies in the clip.
@@ -70,11 +70,11 @@ impl Candidates {
         let levels = (0..depth).find(|j| start < block.born_before(j + 1)).unwrap_or(depth);
         let end = self.end.min(block.born_before(levels + 1)).min(start.saturating_add(most));
         let quarters = node.rotation / 3;
-        let centre = (0..levels).fold(node.centre, |centre, _| centre.finer());
+        let center = (0..levels).fold(node.center, |center, _| center.finer());
         let half_edge = placement.half_edge(node.level + levels as u8);
         let segment = Segment::new(
             Frame::new(half_edge, placement.origin(), quarters),
-            centre.turned_back(quarters),
+            center.turned_back(quarters),
             block.offsets(usize::from(node.rotation % 3)),
             start..end,
         );

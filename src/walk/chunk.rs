@@ -102,7 +102,7 @@ impl<S: Scalar> Chunk<S> {
         Ok(next)
     }
 
-    /// Takes the fixed centres of some of the batch's entries, as many as fit. Returns the next entry.
+    /// Takes the fixed centers of some of the batch's entries, as many as fit. Returns the next entry.
     #[inline(always)]
     pub(crate) fn load(
         &mut self,

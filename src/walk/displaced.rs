@@ -18,11 +18,11 @@ impl<S: Scalar> Displaced<'_, S> {
     pub(crate) fn moved(
         &self,
         start: usize,
-        centres: impl Iterator<Item = [S; 2]>,
+        centers: impl Iterator<Item = [S; 2]>,
     ) -> impl Iterator<Item = [S; 2]> {
         let frame = self.frame;
         let steps = self.x[start..].iter().zip(&self.y[start..]);
-        centres.zip(steps).map(move |([x, y], (step_x, step_y))| {
+        centers.zip(steps).map(move |([x, y], (step_x, step_y))| {
             let step = frame.displacement([*step_x, *step_y]);
             [x + step[0], y + step[1]]
         })

@@ -12,7 +12,7 @@ use crate::sampling::Sampling;
 use crate::tables::Tables;
 use crate::tree::node::Node;
 
-/// What a walk carries beside a tile: nothing for fixed centres, its [`Ancestry`] for relaxed points.
+/// What a walk carries beside a tile: nothing for fixed centers, its [`Ancestry`] for relaxed points.
 pub(crate) trait Mode: Copy + core::fmt::Debug {
     /// Whether points are moved.
     const RELAXED: bool;

@@ -48,7 +48,7 @@ impl<K: Mode> OpenTile<K> {
 
     /// Opens `node`, of whose descendants those with a rank under `node_limit` can be accepted.
     ///
-    /// A child's own centre belongs to `node`'s batch. What is left below a level-(m + 1) child with
+    /// A child's own center belongs to `node`'s batch. What is left below a level-(m + 1) child with
     /// rank r has ranks from N_{m+1} + r on, and its points are born at most `levels` − 1 levels below
     /// it, so near that a smaller disc than the child's whole subtree's holds them.
     #[inline(always)]
@@ -68,7 +68,7 @@ impl<K: Mode> OpenTile<K> {
         let block = placement.tables().block(node.kind);
         let children = node.kind.child_count();
         let (mut x, mut y) = ([0.0; MAX_CHILDREN], [0.0; MAX_CHILDREN]);
-        child_centres(sampling, node).write_columns(&mut x, &mut y);
+        child_centers(sampling, node).write_columns(&mut x, &mut y);
 
         let corner = placement.domain().min();
         let levels = levels_below(node, node_limit);
@@ -80,11 +80,11 @@ impl<K: Mode> OpenTile<K> {
         let mut touching = 0;
         for digit in 0..children {
             (digits[touching], x[touching], y[touching]) = (digit as u8, x[digit], y[digit]);
-            let centre = corner + DVec2::new(x[touching], y[touching]);
-            let touches = node_inside || clip.touches(&Disc { centre, radius: wide });
+            let center = corner + DVec2::new(x[touching], y[touching]);
+            let touches = node_inside || clip.touches(&Disc { center, radius: wide });
             if K::RELAXED {
                 // Importance is read at the nearest place of the domain, which is never farther from
-                // this one than the point from the centre.
+                // this one than the point from the center.
                 x[touching] = x[touching].clamp(0.0, size.x);
                 y[touching] = y[touching].clamp(0.0, size.y);
             }
@@ -106,7 +106,7 @@ impl<K: Mode> OpenTile<K> {
             if scale.limit_before_rounding(*bound) < least as i64 as f64 && *bound >= 0.0 {
                 continue;
             }
-            let region = Disc { centre: corner + DVec2::new(x[i], y[i]), radius };
+            let region = Disc { center: corner + DVec2::new(x[i], y[i]), radius };
             // No child has more than its parent, even where a bound that need not hold says so: the
             // disc above is made for the parent's limit.
             let limit = sampling.rank_limit_of_bound(*bound, &region)?.min(node_limit);
@@ -123,15 +123,15 @@ impl<K: Mode> OpenTile<K> {
     }
 }
 
-/// The centres of a node's children, by digit, relative to the domain's least corner.
+/// The centers of a node's children, by digit, relative to the domain's least corner.
 #[inline(always)]
-fn child_centres<'t, I: Importance>(sampling: &Sampling<'t, I>, node: &Node) -> Segment<'t, f64> {
+fn child_centers<'t, I: Importance>(sampling: &Sampling<'t, I>, node: &Node) -> Segment<'t, f64> {
     let placement = sampling.placement();
     let quarters = node.rotation / 3;
-    let centre: ExactPoint = node.centre.finer();
+    let center: ExactPoint = node.center.finer();
     Segment::new(
         Frame::new(placement.half_edge(node.level + 1), placement.origin(), quarters),
-        centre.turned_back(quarters),
+        center.turned_back(quarters),
         placement.tables().block(node.kind).offsets(usize::from(node.rotation % 3)),
         0..node.kind.child_count(),
     )

@@ -1,6 +1,6 @@
 //! Relaxed points: the same tiles, ranks and acceptance, and then a step aside.
 //!
-//! Every point is accepted or not at its fixed centre, with the importance of the nearest place in the
+//! Every point is accepted or not at its fixed center, with the importance of the nearest place in the
 //! domain, and then moved by the vector of its classes and of the local density phase. What lies in
 //! the domain is decided by where it ends up; so the walk's regions are widened by [`margin`].
 
@@ -131,7 +131,7 @@ impl<S: Scalar> Chunk<S> {
 }
 
 impl<I: Importance> Displacer<'_, '_, I> {
-    /// The place of the domain nearest to a centre.
+    /// The place of the domain nearest to a center.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S, y: S) -> DVec2 {
         let corner = self.sampling.placement().domain().min();
@@ -139,7 +139,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
     }
 
     /// The phase that a point reads, and the detail. `at` is the place of the domain nearest to its
-    /// centre, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
+    /// center, `value` the importance there, and `per_tile` the tiles a rank of the level above its own.
     #[inline(always)]
     fn phase(&self, at: DVec2, value: f64, per_tile: f64) -> (f64, f64) {
         let importance = self.sampling.importance();
@@ -173,10 +173,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
     fn nothing_constrains(&self) -> bool {
         let (sampling, node) = (self.sampling, &self.batch.node);
         let (placement, importance) = (sampling.placement(), sampling.importance());
-        let centre = placement.domain().min() + placement.centre(node);
+        let center = placement.domain().min() + placement.center(node);
         let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
         importance.longest_constraint() <= 0.0
-            && importance.lower_bound(&Disc { centre, radius }) > 0.0
+            && importance.lower_bound(&Disc { center, radius }) > 0.0
     }
 
     /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
@@ -312,7 +312,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
         }
     }
 
-    /// The step of any point of the chunk: a frontier tile's own centre, and centres of an opened tile's
+    /// The step of any point of the chunk: a frontier tile's own center, and centers of an opened tile's
     /// children with points far below them.
     #[inline(never)]
     fn step<S: Scalar>(&self, chunk: &Chunk<S>, i: usize) -> [S; 2] {
@@ -330,15 +330,15 @@ impl<I: Importance> Displacer<'_, '_, I> {
         let below = usize::from(level.saturating_sub(node.level));
         let block = batch.block(placement);
         let child = match below {
-            // A child is one level below the tile; further down its centre is followed.
+            // A child is one level below the tile; further down its center is followed.
             2.. => node.child(tables, entry),
             _ => None,
         };
         let (formula, coefficients) = match child {
-            _ if entry == 0 => (ClassFormula::of_centre(tables, ancestry, node, below), (0, 0)),
+            _ if entry == 0 => (ClassFormula::of_center(tables, ancestry, node, below), (0, 0)),
             Some(child) => {
                 let ancestry = ancestry.child(node, entry, &child);
-                (ClassFormula::of_centre(tables, &ancestry, &child, below - 1), (0, 0))
+                (ClassFormula::of_center(tables, &ancestry, &child, below - 1), (0, 0))
             }
             // A bound that need not hold may have hidden that a point is deeper than any here.
             None => (

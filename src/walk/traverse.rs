@@ -1,7 +1,7 @@
 //! The paper's ADAPTIVESAMP, with exact pruning: depth first, digit 0 first.
 //!
 //! In the subtree of a level-m tile with rank r, the smallest rank is r, and the smallest rank that is
-//! not the centre's own is N_m + r. A tile's centre is tested with its parent's batch; so a subtree
+//! not the center's own is N_m + r. A tile's center is tested with its parent's batch; so a subtree
 //! whose bound in rank units is at most N_m + r needs no visit. This is sharper than the paper's κ
 //! (its equation 8) and takes no logarithm.
 //!
@@ -9,13 +9,13 @@
 //! level m      tile: limit = ranks that its bound admits
 //!                │ limit ≤ N_m + r                      nothing below it: passed over
 //!                │ few entries left to test             one batch: the block's entries below limit
-//!                │ otherwise: opened                    one batch: the children's centres
+//!                │ otherwise: opened                    one batch: the children's centers
 //! level m + 1    ├─ child 0 ─ …                         then each child, digit 0 first
 //!                ├─ child 1 ─ …
 //! ```
 //!
 //! `advance` goes to the next tile (a child of the deepest open tile, or a tile of the frontier, whose own
-//! centre is a batch by itself) and visits it, until there is a batch to hand out.
+//! center is a batch by itself) and visits it, until there is a batch to hand out.
 
 use super::candidates::Candidates;
 use super::chunk::Chunk;
@@ -67,7 +67,7 @@ pub(crate) struct Traversal<K> {
     depth: usize,
     /// The number of frontier tiles begun.
     frontier: usize,
-    /// How many ranks the bound of the frontier tile begun last admits, while only that tile's centre
+    /// How many ranks the bound of the frontier tile begun last admits, while only that tile's center
     /// has been tested.
     begun: Option<u64>,
     clip: Clip,
@@ -206,8 +206,8 @@ impl<K: Mode> Traversal<K> {
         node: &Node,
     ) -> Result<Option<u64>, SamplingError> {
         let placement = sampling.placement();
-        let centre = placement.domain().min() + placement.centre(node);
-        let region = Disc { centre, radius: placement.reach(node.level, usize::MAX) };
+        let center = placement.domain().min() + placement.center(node);
+        let region = Disc { center, radius: placement.reach(node.level, usize::MAX) };
         let radius = region.radius + K::margin(sampling, node.level);
         let region_of_points = Disc { radius, ..region };
         if !self.clip.touches(&region_of_points) {
@@ -217,7 +217,7 @@ impl<K: Mode> Traversal<K> {
             // Importance is read at the nearest place of the domain.
             true => {
                 let domain = placement.domain();
-                Disc { centre: centre.clamp(domain.min(), domain.max()), ..region }
+                Disc { center: center.clamp(domain.min(), domain.max()), ..region }
             }
             false => region,
         };
@@ -233,8 +233,8 @@ impl<K: Mode> Traversal<K> {
         Ok((limit > node.rank).then_some(limit))
     }
 
-    /// Visits a tile whose own centre has had its turn: either all that can be accepted in it becomes
-    /// one batch, or it is opened and the batch is its children's centres. `false` if nothing can be.
+    /// Visits a tile whose own center has had its turn: either all that can be accepted in it becomes
+    /// one batch, or it is opened and the batch is its children's centers. `false` if nothing can be.
     #[inline(always)]
     fn visit<I: Importance>(
         &mut self,
@@ -299,7 +299,7 @@ impl<K: Mode> Traversal<K> {
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
         open.expand(sampling, &self.clip, node, &self.ancestry, limit, *inside)?;
-        // Deeper levels are wanted, so that all children's centres are.
+        // Deeper levels are wanted, so that all children's centers are.
         let end = block.born_before(2);
         let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth + 1));
         self.depth += 1;
@@ -317,8 +317,8 @@ fn sure_below<I: Importance>(
     levels: usize,
 ) -> usize {
     let placement = sampling.placement();
-    let centre = placement.domain().min() + placement.centre(node);
-    let region = Disc { centre, radius: placement.reach(node.level, levels) };
+    let center = placement.domain().min() + placement.center(node);
+    let region = Disc { center, radius: placement.reach(node.level, levels) };
     let lower = sampling.importance().lower_bound(&region);
     // A broken promise admits no more than the upper bound; NaN, nothing.
     let limit = sampling.scale().limit(if lower > bound { bound } else { lower });

@@ -1,6 +1,6 @@
 //! Constant ground, relaxed: every point reads the same phase, so that a vector depends on its class
 //! alone. The vectors of whole blocks are looked up once a walk, in the order of their entries, and then
-//! added to the fixed centres as fast as these are read.
+//! added to the fixed centers as fast as these are read.
 
 use super::ancestry::ClassFormula;
 use super::candidates::Candidates;
@@ -72,7 +72,7 @@ impl<'a> UniformDisplacements<'a> {
         })
     }
 
-    /// The steps of a batch's entries; `None` for a batch of other tiles' centres.
+    /// The steps of a batch's entries; `None` for a batch of other tiles' centers.
     #[inline(always)]
     pub(crate) fn steps<S: Scalar>(
         &mut self,

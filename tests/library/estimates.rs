@@ -3,7 +3,7 @@
 use crate::common::{environment, map, noise, photograph};
 use glam::{DVec2, DVec3};
 use twelvefold::estimate::{
-    ExactError, Warp, Weighted, Weighting, exactly, normalise, post_stratify,
+    ExactError, Warp, Weighted, Weighting, exactly, normalize, post_stratify,
 };
 use twelvefold::{
     Amount, BilinearMap, Constant, Disc, Domain, EnvironmentMap, Function, ImageMap, Importance,
@@ -96,7 +96,7 @@ fn bias<I: Importance>(
 /// A ramp from 0 to 2 along a slanted direction, bounded over discs.
 fn ramp() -> impl Importance {
     let value = |p: DVec2| (1.5 * p.x + 0.5 * p.y).max(0.0);
-    Function::new(value, move |r: &Disc| value(r.centre + r.radius)).with_integral(1.0)
+    Function::new(value, move |r: &Disc| value(r.center + r.radius)).with_integral(1.0)
 }
 
 /// Placement by seed makes every estimate unbiased, 8 points included. 48 figures of about N(0, 1): the
@@ -164,7 +164,7 @@ fn an_aligned_placement_is_unbiased_and_a_complete_level() {
     for (running, truth) in running.iter().zip(integrals(&Constant::ONE, &Domain::UNIT)) {
         assert!(running.z(truth).abs() < 4.0, "{}", running.z(truth));
     }
-    // No two centres of one level are closer than an edge; between levels they are.
+    // No two centers of one level are closer than an edge; between levels they are.
     for (density, seed) in [(300.0, 1), (1000.0, 2), (2718.0, 3), (9999.0, 4)] {
         let edge = (1.0 / ((4.0 * 3f64.sqrt() - 6.0) * density)).sqrt();
         let placement = Placement::aligned(Domain::UNIT, seed, density).unwrap();
@@ -226,9 +226,9 @@ fn each_refinement_lowers_the_error_as_documented() {
     let seeds = 60;
     let plain = errors(seeds, truths, domain, |seed| weighted(seed, Weighting::Density));
     let smoothed = errors(seeds, truths, domain, |seed| weighted(seed, Weighting::Smoothed));
-    let normalised = errors(seeds, truths, domain, |seed| {
+    let normalized = errors(seeds, truths, domain, |seed| {
         let mut points = weighted(seed, Weighting::Density);
-        normalise(&mut points, n as f64);
+        normalize(&mut points, n as f64);
         points
     });
     let stratified = errors(seeds, truths, domain, |seed| {
@@ -253,7 +253,7 @@ fn each_refinement_lowers_the_error_as_documented() {
     println!("white noise     {white:.5?}");
     println!("1/density       {plain:.5?}");
     println!("smoothed        {smoothed:.5?}");
-    println!("normalised      {normalised:.5?}");
+    println!("normalized      {normalized:.5?}");
     println!("exactly n       {exact:.5?}");
     println!("post-stratified {stratified:.5?}");
     println!("warped          {warped:.5?}");
@@ -350,7 +350,7 @@ fn exactly_n_needs_no_integral_and_no_limit_on_contrast() {
     let bump = Function::new(
         |p: DVec2| (1.0 - 40.0 * p.distance(DVec2::new(0.3, 0.4))).max(0.0),
         |r: &Disc| {
-            (1.0 - 40.0 * (r.centre.distance(DVec2::new(0.3, 0.4)) - r.radius)).clamp(0.0, 1.0)
+            (1.0 - 40.0 * (r.center.distance(DVec2::new(0.3, 0.4)) - r.radius)).clamp(0.0, 1.0)
         },
     );
     for n in [1, 10, 1000, 5000] {
@@ -376,7 +376,7 @@ fn exactly_n_says_when_there_are_not_so_many() {
     let spot = DVec2::new(0.3, 0.4);
     let tiny = Function::new(
         move |p: DVec2| f64::from(p.distance(spot) < 1e-6),
-        move |r: &Disc| f64::from(r.centre.distance(spot) < 1e-6 + r.radius),
+        move |r: &Disc| f64::from(r.center.distance(spot) < 1e-6 + r.radius),
     );
     assert_eq!(exactly(&placement, &tiny, 50, Limits::default()).unwrap().len(), 50);
     match exactly(&placement, &tiny, 1000, Limits::default()).unwrap_err() {
@@ -413,7 +413,7 @@ fn post_stratified_weights_add_up_and_are_not_negative() {
         }
     }
     post_stratify(&mut [], image, 4.0);
-    normalise(&mut [], 4.0);
+    normalize(&mut [], 4.0);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// The modules of `src/lib.rs` from the ground up. A module imports from itself and from rows below its
-/// own, not from its neighbours in a row.
+/// own, not from its neighbors in a row.
 const FLOORS: [&[&str]; 11] = [
     &["tiling", "domain", "random", "simd"],
     &["bake", "error", "position"],

@@ -16,8 +16,8 @@ fn assert_same(updated: &ImageMap, pixels: &[f32]) {
     for radius in [0.4, 1.0, 3.0, 11.0, 100.0] {
         for y in 0..height {
             for x in 0..width {
-                let centre = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-                let region = Disc { centre, radius };
+                let center = glam::DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let region = Disc { center, radius };
                 assert_eq!(updated.upper_bound(&region), fresh.upper_bound(&region));
                 assert_eq!(updated.lower_bound(&region), fresh.lower_bound(&region));
             }
@@ -135,22 +135,22 @@ fn a_bound_misses_no_pixel_and_sees_none_far_away() {
             let negative = pixels.iter().map(|pixel| 1.0 - pixel).collect();
             let negative = ImageMap::new(width, height, negative, InvalidPixels::Reject).unwrap();
             let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).unwrap();
-            // The nearest point of the hot pixel's square to a disc's centre.
+            // The nearest point of the hot pixel's square to a disc's center.
             let low = glam::DVec2::new((hot % width) as f64, (hot / width) as f64);
             for i in 0..64 {
                 let place = |step: usize, size: usize| (i * step % 64) as f64 / 64.0 * size as f64;
-                let centre = glam::DVec2::new(place(1, width), place(27, height));
+                let center = glam::DVec2::new(place(1, width), place(27, height));
                 for radius in [0.01, 0.6, 1.0, 2.3, 9.0, 70.0] {
-                    let region = Disc { centre, radius };
+                    let region = Disc { center, radius };
                     let bound = map.upper_bound(&region);
                     assert_eq!(negative.lower_bound(&region), 1.0 - bound);
-                    let away = centre.distance(centre.clamp(low, low + 1.0));
+                    let away = center.distance(center.clamp(low, low + 1.0));
                     assert!(away >= radius || bound == 1.0);
                     // A square of side 2r, widened to texels of at most 2r or one pixel each side.
                     let reach = std::f64::consts::SQRT_2 * (3.0 * radius).max(radius + 1.0);
                     assert!(
                         away <= reach + 1e-9 || bound == 0.0,
-                        "{width} {hot} {centre} {radius}"
+                        "{width} {hot} {center} {radius}"
                     );
                 }
             }

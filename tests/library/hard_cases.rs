@@ -10,10 +10,10 @@ use twelvefold::{
 };
 
 /// Importance 1 in a disc and 0 elsewhere, with its exact bound.
-fn disc(centre: DVec2, radius: f64) -> Function<impl Fn(DVec2) -> f64, impl Fn(&Disc) -> f64> {
+fn disc(center: DVec2, radius: f64) -> Function<impl Fn(DVec2) -> f64, impl Fn(&Disc) -> f64> {
     Function::new(
-        move |p: DVec2| f64::from(p.distance(centre) < radius),
-        move |r: &Disc| f64::from(r.centre.distance(centre) < radius + r.radius),
+        move |p: DVec2| f64::from(p.distance(center) < radius),
+        move |r: &Disc| f64::from(r.center.distance(center) < radius + r.radius),
     )
 }
 
@@ -29,7 +29,7 @@ fn greatest_density(placement: &Placement<'_>) -> f64 {
     };
     let (mut low, mut high) = (1.0f64, 1e300);
     assert!(admitted(low) && !admitted(high));
-    // Bisection of the bits: ends at neighbouring numbers.
+    // Bisection of the bits: ends at neighboring numbers.
     while low.next_up() < high {
         let middle = f64::from_bits((low.to_bits() + high.to_bits()) / 2);
         if admitted(middle) { low = middle } else { high = middle }
@@ -50,9 +50,9 @@ fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
         ));
 
         let radius = 2e-6;
-        let (centre, expected) =
+        let (center, expected) =
             (DVec2::new(0.3, 0.8), core::f64::consts::PI * radius * radius * density);
-        let spot = disc(centre, radius);
+        let spot = disc(center, radius);
         let sampling = Sampling::within(&placement, &spot, Amount::Density(density), few_tiles());
         let found = points(&sampling.unwrap()).unwrap();
         assert!((found.len() as f64 / expected - 1.0).abs() < 0.2, "{} {expected}", found.len());
@@ -62,7 +62,7 @@ fn the_last_level_is_reached_and_what_is_past_it_is_an_error() {
         let edge = (1.0 / (0.9282 * density)).sqrt();
         let mut nearest = f64::INFINITY;
         for (i, (_, a)) in found.iter().enumerate() {
-            assert!(a.distance(centre) < radius);
+            assert!(a.distance(center) < radius);
             for (_, b) in &found[..i] {
                 nearest = nearest.min(a.distance(*b));
             }
@@ -139,7 +139,7 @@ fn far_from_the_origin_no_point_is_lost() {
         (DVec2::new(-1e12, 0.0), DVec2::splat(1e9)),
     ];
     for (corner, size) in shapes {
-        // Thousands of points between two neighbouring coordinates.
+        // Thousands of points between two neighboring coordinates.
         for seed in 0..4 {
             let near = Placement::new(Domain::new(DVec2::ZERO, size).unwrap(), seed);
             let far = Placement::new(Domain::new(corner, size).unwrap(), seed);

@@ -133,7 +133,7 @@ proptest! {
         // Pruning that lost a point would show: a bound without any information prunes nothing.
         let value = |p: DVec2| p.x * p.x * p.y;
         let bound = |r: &Disc| {
-            let [x, y] = (r.centre + r.radius).clamp(DVec2::ZERO, DVec2::ONE).to_array();
+            let [x, y] = (r.center + r.radius).clamp(DVec2::ZERO, DVec2::ONE).to_array();
             x * x * y
         };
         let placement = Placement::new(Domain::UNIT, seed);
@@ -291,7 +291,7 @@ fn relaxed_points_along_an_edge_keep_their_distance_and_their_number() {
             }
         }
     }
-    // A point that is held at the edge knows nothing of its neighbours: some few come close.
+    // A point that is held at the edge knows nothing of its neighbors: some few come close.
     assert!(near * 2000 <= total, "{near} of {total}");
     let bias = total as f64 / (count * seeds as f64) - 1.0;
     assert!(bias.abs() < 0.003, "{bias}");

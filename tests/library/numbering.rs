@@ -139,7 +139,7 @@ fn a_rank_is_a_fixed_index_and_subtrees_start_where_the_design_says() {
                 let children = (0..tile.kind.child_count())
                     .map(|digit| FCode::parse(root, &format!("{digit:X}{code}")).unwrap().rank());
                 let ranks: Vec<u64> = children.collect();
-                // The centre keeps its rank; the first new one is N_m later; all ascend with the digit.
+                // The center keeps its rank; the first new one is N_m later; all ascend with the digit.
                 assert_eq!(ranks[0], code.rank());
                 assert_eq!(ranks[1], counts.at(levels).unwrap() + code.rank());
                 assert!(ranks.is_sorted_by(|a, b| a < b), "{code:?} {ranks:?}");

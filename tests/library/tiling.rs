@@ -1,4 +1,4 @@
-//! The tiling's laws, proved exhaustively at small levels and in random deep neighbourhoods, in exact
+//! The tiling's laws, proved exhaustively at small levels and in random deep neighborhoods, in exact
 //! arithmetic throughout.
 
 use std::collections::{HashMap, HashSet};
@@ -38,8 +38,8 @@ fn minus(a: Cyclotomic, b: Cyclotomic) -> Cyclotomic {
     a.checked_sub(b).unwrap()
 }
 
-fn neighbour(tile: &Tile, k: i32) -> Cyclotomic {
-    tile.centre.checked_add(Cyclotomic::zeta_power(k)).unwrap()
+fn neighbor(tile: &Tile, k: i32) -> Cyclotomic {
+    tile.center.checked_add(Cyclotomic::zeta_power(k)).unwrap()
 }
 
 /// The sign of a − b.
@@ -52,7 +52,7 @@ fn stretched(z: Cyclotomic, levels: usize) -> Cyclotomic {
     (0..levels).fold(z, |z, _| z.checked_mul_lambda().unwrap())
 }
 
-/// Whether `z` lies within (1 − 1/√2)·λ^levels − `margin` of the centre of its ancestor `levels` up,
+/// Whether `z` lies within (1 − 1/√2)·λ^levels − `margin` of the center of its ancestor `levels` up,
 /// so that the whole refined tiling within `margin` of it descends from that ancestor: every other
 /// tile of the ancestor's level is at least λ^levels away and reaches λ^levels/√2 far. Rounded inwards.
 fn is_interior(z: Cyclotomic, levels: usize, margin: f64) -> bool {
@@ -61,20 +61,20 @@ fn is_interior(z: Cyclotomic, levels: usize, margin: f64) -> bool {
     x.hypot(y) <= 0.2928 * edge - margin
 }
 
-/// All pairs of `centres` at distance below 2, once each: (index, index, difference).
-fn close_pairs(centres: &[Cyclotomic]) -> Vec<(usize, usize, Cyclotomic)> {
+/// All pairs of `centers` at distance below 2, once each: (index, index, difference).
+fn close_pairs(centers: &[Cyclotomic]) -> Vec<(usize, usize, Cyclotomic)> {
     let cell = |z: &Cyclotomic| z.to_f64().map(|v| (v / 2.0).floor() as i64);
     let mut grid: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
-    for (i, z) in centres.iter().enumerate() {
+    for (i, z) in centers.iter().enumerate() {
         grid.entry(cell(z)).or_default().push(i);
     }
     let mut pairs = Vec::new();
-    for (i, z) in centres.iter().enumerate() {
+    for (i, z) in centers.iter().enumerate() {
         let [column, row] = cell(z);
         for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
             for &j in grid.get(&[column + dx, row + dy]).into_iter().flatten() {
                 if i < j {
-                    pairs.push((i, j, minus(centres[j], *z)));
+                    pairs.push((i, j, minus(centers[j], *z)));
                 }
             }
         }
@@ -82,25 +82,25 @@ fn close_pairs(centres: &[Cyclotomic]) -> Vec<(usize, usize, Cyclotomic)> {
     pairs
 }
 
-/// Every two centres differ, none are closer than 1, and every tile has one at exactly 1.
+/// Every two centers differ, none are closer than 1, and every tile has one at exactly 1.
 fn assert_nearest_is_one(tiles: &[Tile]) {
-    // Relative to the first: random deep neighbourhoods lie too far out for `squared_length`.
-    let centres: Vec<_> = tiles.iter().map(|t| minus(t.centre, tiles[0].centre)).collect();
-    assert_eq!(centres.iter().collect::<HashSet<_>>().len(), tiles.len(), "two tiles coincide");
-    let mut has_unit_neighbour = vec![tiles.len() == 1; tiles.len()];
-    for (i, j, difference) in close_pairs(&centres) {
+    // Relative to the first: random deep neighborhoods lie too far out for `squared_length`.
+    let centers: Vec<_> = tiles.iter().map(|t| minus(t.center, tiles[0].center)).collect();
+    assert_eq!(centers.iter().collect::<HashSet<_>>().len(), tiles.len(), "two tiles coincide");
+    let mut has_unit_neighbor = vec![tiles.len() == 1; tiles.len()];
+    for (i, j, difference) in close_pairs(&centers) {
         match compare(difference.squared_length().unwrap(), Surd::integer(1)) {
-            0 => (has_unit_neighbour[i], has_unit_neighbour[j]) = (true, true),
+            0 => (has_unit_neighbor[i], has_unit_neighbor[j]) = (true, true),
             sign => assert_eq!(sign, 1, "{:?} and {:?} are too close", tiles[i], tiles[j]),
         }
     }
-    assert!(has_unit_neighbour.into_iter().all(|has| has));
+    assert!(has_unit_neighbor.into_iter().all(|has| has));
 }
 
 /// The star read off the tiling equals the star of the tile's type, turned by its rotation.
-fn assert_star(tile: &Tile, centres: &HashSet<Cyclotomic>) {
+fn assert_star(tile: &Tile, centers: &HashSet<Cyclotomic>) {
     let measured: HashSet<u8> =
-        (0..12).filter(|k| centres.contains(&neighbour(tile, i32::from(*k)))).collect();
+        (0..12).filter(|k| centers.contains(&neighbor(tile, i32::from(*k)))).collect();
     let expected: HashSet<u8> = tile.kind.star().iter().map(|k| (k + tile.rotation) % 12).collect();
     assert_eq!(measured, expected, "{tile:?}");
 }
@@ -149,15 +149,15 @@ fn child_types_counts_and_digits_are_those_of_equation_1() {
 }
 
 #[test]
-fn the_centre_child_is_an_a_tile_with_digit_0() {
+fn the_center_child_is_an_a_tile_with_digit_0() {
     let rules = rules();
     for root in TileType::ALL {
         for parent in descendants(&rules, Tile::root(root), 2) {
             let child = rules.child_of(&parent, 0).unwrap().unwrap();
             assert_eq!(child.kind, TileType::A);
-            assert_eq!(child.centre, stretched(parent.centre, 1));
-            // The centre child stays put: its centre is the parent's, exactly.
-            assert_eq!(child.centre.checked_div_lambda().unwrap(), parent.centre);
+            assert_eq!(child.center, stretched(parent.center, 1));
+            // The center child stays put: its center is the parent's, exactly.
+            assert_eq!(child.center.checked_div_lambda().unwrap(), parent.center);
         }
     }
 }
@@ -194,10 +194,10 @@ fn every_interior_star_is_the_star_of_its_type() {
     for root in TileType::ALL {
         for level in 1..=4 {
             let tiles = descendants(&rules, Tile::root(root), level);
-            let centres: HashSet<_> = tiles.iter().map(|tile| tile.centre).collect();
+            let centers: HashSet<_> = tiles.iter().map(|tile| tile.center).collect();
             let interior: Vec<_> =
-                tiles.iter().filter(|tile| is_interior(tile.centre, level, 1.0)).collect();
-            interior.iter().for_each(|tile| assert_star(tile, &centres));
+                tiles.iter().filter(|tile| is_interior(tile.center, level, 1.0)).collect();
+            interior.iter().for_each(|tile| assert_star(tile, &centers));
             // The disk's area over the mean area of a cell, 4√3 − 6, less a border of it.
             let radius = 0.2928 * (2.0 + 3f64.sqrt()).powi(level as i32) - 1.0;
             let expected = std::f64::consts::PI * radius * radius / (4.0 * 3f64.sqrt() - 6.0);
@@ -218,15 +218,15 @@ fn every_vertex_of_the_refined_tiling_has_one_owner() {
         let mut owners: HashMap<Cyclotomic, usize> = HashMap::new();
         for parent in &parents {
             for child in descendants(&rules, *parent, 1) {
-                *owners.entry(child.centre).or_default() += 1;
+                *owners.entry(child.center).or_default() += 1;
             }
         }
         assert!(owners.values().all(|count| *count == 1));
         let mut claimed = HashSet::new();
         let mut checked = 0;
         for parent in &parents {
-            let centre = stretched(parent.centre, 1);
-            let at = |offset: Cyclotomic| centre.checked_add(offset).unwrap();
+            let center = stretched(parent.center, 1);
+            let at = |offset: Cyclotomic| center.checked_add(offset).unwrap();
             let hexagon =
                 (0..6).map(|i| at(Cyclotomic::zeta_power(2 * i + i32::from(parity(parent)) + 1)));
             let dodecagon = (0..12).map(|k| {
@@ -234,9 +234,9 @@ fn every_vertex_of_the_refined_tiling_has_one_owner() {
                 at(turned.checked_add(Cyclotomic::zeta_power(k + 1)).unwrap())
             });
             let vertices: Vec<_> =
-                std::iter::once(centre).chain(hexagon).chain(dodecagon).collect();
+                std::iter::once(center).chain(hexagon).chain(dodecagon).collect();
             claimed.extend(vertices.iter().copied());
-            if is_interior(parent.centre, level, 1.0) {
+            if is_interior(parent.center, level, 1.0) {
                 for vertex in vertices {
                     assert_eq!(owners.get(&vertex), Some(&1), "{root:?} {vertex:?}");
                     checked += 1;
@@ -244,7 +244,7 @@ fn every_vertex_of_the_refined_tiling_has_one_owner() {
             }
         }
         assert!(checked > 19 * 500, "{checked}");
-        // Nothing else is made: every child lies on some parent's centre, hexagon or dodecagon.
+        // Nothing else is made: every child lies on some parent's center, hexagon or dodecagon.
         assert!(owners.keys().all(|vertex| claimed.contains(vertex)));
     }
 }
@@ -274,7 +274,7 @@ fn descendants_stay_within_an_edge_over_root_two() {
         for level in 1..=4 {
             let farthest = edge_squared(level);
             for tile in descendants(&rules, Tile::root(root), level) {
-                let twice = tile.centre.squared_length().unwrap();
+                let twice = tile.center.squared_length().unwrap();
                 let twice = Surd { whole: 2 * twice.whole, root: 2 * twice.root };
                 assert_eq!(compare(twice, farthest), -1, "{root:?} level {level} {tile:?}");
             }
@@ -292,14 +292,14 @@ proptest! {
     /// The same laws three levels below a random tile of a random level to 13, where coordinates
     /// have up to nine digits.
     #[test]
-    fn the_laws_hold_in_random_deep_neighbourhoods(
+    fn the_laws_hold_in_random_deep_neighborhoods(
         root in any_root(), level in 0usize..=13, position in 0.0..1.0f64,
     ) {
         let rules = rules();
         let tiles = TileCounts::of(root).at(level).unwrap();
         let rank = ((position * tiles as f64) as u64).min(tiles - 1);
         let ancestor = FCode::from_rank(root, level, rank).unwrap().tile(&rules).unwrap();
-        let origin = stretched(ancestor.centre, 3);
+        let origin = stretched(ancestor.center, 3);
         let patch = descendants(&rules, ancestor, 3);
 
         prop_assert_eq!(patch.len() as u64, TileCounts::of(ancestor.kind).at(3).unwrap());
@@ -309,12 +309,12 @@ proptest! {
             expected_area = times_delta(expected_area);
         }
         prop_assert_eq!(area(&patch), expected_area);
-        let centres: HashSet<_> = patch.iter().map(|tile| tile.centre).collect();
+        let centers: HashSet<_> = patch.iter().map(|tile| tile.center).collect();
         let mut interior = 0;
         for tile in &patch {
             prop_assert_eq!(parity(tile), (root.parity() + (level as u8 + 3) % 2) % 2);
-            if is_interior(minus(tile.centre, origin), 3, 1.0) {
-                assert_star(tile, &centres);
+            if is_interior(minus(tile.center, origin), 3, 1.0) {
+                assert_star(tile, &centers);
                 interior += 1;
             }
         }

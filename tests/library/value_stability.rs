@@ -83,14 +83,14 @@ fn line(lines: &mut String, name: &str, precision: &str, count: usize, hash: Sha
 #[test]
 fn points_are_those_of_the_golden_file() {
     let mut lines = String::new();
-    let off_centre = Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap();
+    let off_center = Domain::new(DVec2::new(-3.7, 5.1), DVec2::new(7.3, 2.9)).unwrap();
     let maps = [
         ("ramp", ramp()),
         ("texture", texture()),
         ("edges", edges()),
         ("hot-spot", hot_spot()),
         ("ramp-unit", ramp().over(Domain::UNIT)),
-        ("texture-off-centre", texture().over(off_centre)),
+        ("texture-off-center", texture().over(off_center)),
         (
             "texture-power-of-two",
             texture().over(Domain::new(DVec2::ZERO, DVec2::splat(2.0)).unwrap()),
@@ -98,7 +98,7 @@ fn points_are_those_of_the_golden_file() {
     ];
     for seed in [1, 2] {
         for count in [3.0, 50.0, 1_000.0, 40_000.0] {
-            for (name, domain) in [("unit", Domain::UNIT), ("off-centre", off_centre)] {
+            for (name, domain) in [("unit", Domain::UNIT), ("off-center", off_center)] {
                 let placement = Placement::new(domain, seed);
                 let sampling =
                     Sampling::new(&placement, &Constant::ONE, Amount::Points(count)).unwrap();
@@ -112,7 +112,7 @@ fn points_are_those_of_the_golden_file() {
         }
         // The committed offsets, on constant ground of several phases and on maps.
         for count in [40.0, 3_000.0, 12_000.0, 40_000.0, 90_000.0] {
-            for (name, domain) in [("unit", Domain::UNIT), ("off-centre", off_centre)] {
+            for (name, domain) in [("unit", Domain::UNIT), ("off-center", off_center)] {
                 let placement = Placement::new(domain, seed);
                 let sampling = Sampling::new(&placement, &Constant::ONE, Amount::Points(count));
                 let sampling = sampling.unwrap().relaxed().unwrap();
@@ -141,8 +141,8 @@ fn points_are_those_of_the_golden_file() {
         let bump = Function::new(
             |p: DVec2| p.x * (1.0 - p.y),
             |r: &Disc| {
-                (r.centre.x + r.radius).clamp(0.0, 1.0)
-                    * (1.0 - r.centre.y + r.radius).clamp(0.0, 1.0)
+                (r.center.x + r.radius).clamp(0.0, 1.0)
+                    * (1.0 - r.center.y + r.radius).clamp(0.0, 1.0)
             },
         );
         let placement = Placement::new(Domain::UNIT, seed);

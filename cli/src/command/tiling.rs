@@ -88,8 +88,8 @@ impl<W: Write> Rows<'_, W> {
     fn write(&mut self, tile: &Tile) -> io::Result<()> {
         let code = FCode::from_newest_first(self.root, &self.newest_first[..self.levels])
             .map_err(io::Error::other)?;
-        let [z0, z1, z2, z3] = tile.centre.0;
-        let [x, y] = tile.centre.to_f64().map(|v| v * self.edge);
+        let [z0, z1, z2, z3] = tile.center.0;
+        let [x, y] = tile.center.to_f64().map(|v| v * self.edge);
         writeln!(
             self.output,
             "{code},{},{},{z0},{z1},{z2},{z3},{},{},{x},{y}",

@@ -47,7 +47,7 @@ impl Canvas {
         Some(Self { width, height, ink, radius, ready })
     }
 
-    /// Adds a dot with its centre at (x, y), in pixels; what lies outside the canvas is cut off.
+    /// Adds a dot with its center at (x, y), in pixels; what lies outside the canvas is cut off.
     pub(super) fn dot(&mut self, x: f64, y: f64) {
         if self.ready.is_empty() {
             self.large_dot(Disc { x, y, radius: self.radius });
@@ -116,11 +116,11 @@ impl Canvas {
     }
 }
 
-/// The pixels of a row or column of `length` that may lie within `radius` of `centre`.
-fn span(centre: f64, radius: f64, length: usize) -> Range<usize> {
+/// The pixels of a row or column of `length` that may lie within `radius` of `center`.
+fn span(center: f64, radius: f64, length: usize) -> Range<usize> {
     // Casts take what is below zero to zero.
-    let start = ((centre - radius) as usize).min(length);
-    let end = ((centre + radius).ceil() as usize).min(length);
+    let start = ((center - radius) as usize).min(length);
+    let end = ((center + radius).ceil() as usize).min(length);
     start..end.max(start)
 }
 
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn the_centre_of_the_ink_is_the_dots() {
+    fn the_center_of_the_ink_is_the_dots() {
         let mut canvas = Canvas::new(20, 20, 2.3).unwrap();
         canvas.dot(9.4, 11.85);
         let (mut sum, mut x, mut y) = (0.0, 0.0, 0.0);

@@ -53,10 +53,10 @@ fn rise(differences: &mut [f64], from: f64, height: f64) {
     }
 }
 
-/// A small picture of a disc: coverage of the pixels around its centre.
+/// A small picture of a disc: coverage of the pixels around its center.
 #[derive(Debug, Clone)]
 pub(super) struct Stamp {
-    /// Column and row of the first pixel, from the pixel that holds the centre.
+    /// Column and row of the first pixel, from the pixel that holds the center.
     pub(super) left: i64,
     pub(super) top: i64,
     pub(super) width: usize,
@@ -65,7 +65,7 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    /// A disc whose centre lies in the pixel (0, 0), borders included. Its coverage adds up to its
+    /// A disc whose center lies in the pixel (0, 0), borders included. Its coverage adds up to its
     /// area.
     pub(super) fn new(disc: Disc) -> Self {
         let Disc { x, y, radius } = disc;

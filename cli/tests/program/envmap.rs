@@ -111,7 +111,7 @@ fn a_spot_lies_where_the_frame_puts_it() {
         let [x, y, z, ..] = table(&run(&arguments))[0];
         [x, y, z]
     };
-    // Right of the centre, left of it, and just past the seam, all near the horizon; and the zenith.
+    // Right of the center, left of it, and just past the seam, all near the horizon; and the zenith.
     let (right, left, seam, up) = ((48, 15), (16, 15), (0, 15), (0, 0));
     let expected = [
         ("pbrt", [-1, -2, 3], "pbrt"),
@@ -120,17 +120,17 @@ fn a_spot_lies_where_the_frame_puts_it() {
         ("gltf", [1, 3, 2], "threejs"),
         ("openexr", [3, -1, 2], "usd"),
     ];
-    // ±1, ±2, ±3: the axes ±x, ±y, ±z of the centre, of what is right of it, and of up. Mitsuba's and
+    // ±1, ±2, ±3: the axes ±x, ±y, ±z of the center, of what is right of it, and of up. Mitsuba's and
     // OpenEXR's right is -x.
     let along = |[x, y, z]: [f64; 3], axis: i32| {
         [x, y, z][axis.unsigned_abs() as usize - 1] * f64::from(axis.signum()) > 0.98
     };
-    for (name, [centre, to_right, zenith], alias) in expected {
+    for (name, [center, to_right, zenith], alias) in expected {
         for name in [name, alias] {
             let options = ["--frame", name];
             assert!(along(direction(right, &options), to_right), "{name} right");
             assert!(along(direction(left, &options), -to_right), "{name} left");
-            assert!(along(direction(seam, &options), -centre), "{name} seam");
+            assert!(along(direction(seam, &options), -center), "{name} seam");
             assert!(along(direction(up, &options), zenith), "{name} up");
         }
     }
@@ -143,7 +143,7 @@ fn a_spot_lies_where_the_frame_puts_it() {
 }
 
 #[test]
-fn a_spot_in_a_file_lies_right_of_the_centre_as_seen_from_inside() {
+fn a_spot_in_a_file_lies_right_of_the_center_as_seen_from_inside() {
     // 100 × 50 pixels of black but for two in row 25: blue in column 50, red in column 60.
     let map = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/right.hdr");
     let angle = |column: f64| (std::f64::consts::TAU * (column - 50.0) / 100.0).sin_cos();
@@ -209,7 +209,7 @@ fn interpolated_light_needs_its_own_method() {
     let map = path.to_str().unwrap();
     let bilinear = ["envmap", map, "-n", "256", "-o", "-", "--filter", "bilinear"];
     let lights = table(&run(&bilinear));
-    // The pixel and its neighbours, of which the seam is between two: nine times the area.
+    // The pixel and its neighbors, of which the seam is between two: nine times the area.
     assert!(lights.iter().any(|light| light[4] < 0.5) && lights.iter().any(|light| light[4] > 4.0));
     let total: f64 = lights.iter().map(|light| light[4] / (256.0 * light[3])).sum();
     let rows = |y: f64| (std::f64::consts::PI * y / 32.0).cos();

@@ -196,7 +196,7 @@ mod linux {
 
     #[test]
     fn memory_is_in_proportion_to_the_picture() {
-        // 16 million pixels: 48 MB of colours and 64 MB of importance, whatever is drawn.
+        // 16 million pixels: 48 MB of colors and 64 MB of importance, whatever is drawn.
         let folder = TempDir::new().unwrap();
         let photo = folder.path().join("large.png");
         let small = image::open(photograph()).unwrap();

@@ -39,7 +39,7 @@ fn light(level: u8) -> f32 {
     light as f32
 }
 
-/// Fixed centres: a pixel that differs moves no dot but its own.
+/// Fixed centers: a pixel that differs moves no dot but its own.
 const POINTS: &[&str] = &["--points", "2000", "--centers", "fixed", "--refine", "0"];
 
 /// The dots of the same picture as the plainest of files.
@@ -134,12 +134,12 @@ fn png_of_few_bits_and_palettes() {
 }
 
 #[test]
-fn jpeg_gray_and_colour_whatever_the_file_is_called() {
+fn jpeg_gray_and_color_whatever_the_file_is_called() {
     let folder = TempDir::new().unwrap();
     let expected = reference(folder.path());
     for (name, bytes, color) in [
         ("gray.png", pixels(level), ExtendedColorType::L8),
-        ("colour", samples(|x, y| [level(x, y); 3]), ExtendedColorType::Rgb8),
+        ("color", samples(|x, y| [level(x, y); 3]), ExtendedColorType::Rgb8),
     ] {
         let path = folder.path().join(name);
         let file = BufWriter::new(File::create(&path).unwrap());
@@ -282,7 +282,7 @@ fn openexr_float_half_gray_and_alpha() {
     openexr::Image::from_channels((WIDTH, HEIGHT), gray).write().to_file(&path).unwrap();
     assert_alike("gray float", &csv(&path, POINTS), &expected, 0.002);
 
-    // Black that covers what the reference lacks of white: in OpenEXR, colours come multiplied.
+    // Black that covers what the reference lacks of white: in OpenEXR, colors come multiplied.
     openexr::write_rgba_file(&path, WIDTH, HEIGHT, |x, y| (0.0, 0.0, 0.0, 1.0 - value(x, y)))
         .unwrap();
     assert_alike("alpha", &csv(&path, POINTS), &expected, 0.002);

@@ -54,7 +54,7 @@ fn every_row_of_every_root_agrees_with_the_library() {
                 assert_eq!(fields[1], tile.kind.letter().to_string(), "{line}");
                 assert_eq!(fields[2], tile.rotation.to_string(), "{line}");
                 let z = Cyclotomic(std::array::from_fn(|i| fields[3 + i].parse().unwrap()));
-                assert_eq!(z, tile.centre, "{line}");
+                assert_eq!(z, tile.center, "{line}");
                 let rank: usize = fields[7].parse().unwrap();
                 assert_eq!(rank as u64, code.rank(), "{line}");
                 assert!(!std::mem::replace(&mut seen[rank], true), "rank {rank} twice");

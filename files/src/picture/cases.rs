@@ -150,7 +150,7 @@ fn all_of_a_radiance_header_is_followed() {
 
 #[test]
 fn radiance_pixels_come_in_eight_orders() {
-    // Four colours; each header says where the first pixel lies and which way the rows run.
+    // Four colors; each header says where the first pixel lies and which way the rows run.
     for (axes, expected) in [
         ("-Y 2 +X 2", [0, 1, 2, 3]),
         ("-Y 2 -X 2", [1, 0, 3, 2]),

@@ -14,7 +14,7 @@ const D65: [f64; 2] = [0.3127, 0.3290];
 /// What is not known, as the end of a sentence.
 pub(super) fn space(primaries: u8, transfer: u8, full_range: bool) -> Result<Space, String> {
     let primaries = chromaticities(primaries)
-        .ok_or_else(|| format!("colour primaries {primaries} are unknown"))?;
+        .ok_or_else(|| format!("color primaries {primaries} are unknown"))?;
     if transfer == 13 && full_range {
         return Ok(Space::default().with_primaries(&primaries).curved_if_mixed());
     }
@@ -29,7 +29,7 @@ pub(super) fn space(primaries: u8, transfer: u8, full_range: bool) -> Result<Spa
 }
 
 impl Space {
-    /// Colours that a matrix mixes need their curve said.
+    /// Colors that a matrix mixes need their curve said.
     pub(super) fn curved_if_mixed(self) -> Self {
         match self.matrix {
             Some(_) if self.curves.is_none() => {

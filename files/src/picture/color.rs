@@ -1,4 +1,4 @@
-//! What the numbers of a file mean as colours: transfer curves, primaries and ICC profiles, all taken
+//! What the numbers of a file mean as colors: transfer curves, primaries and ICC profiles, all taken
 //! to linear sRGB light.
 
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::srgb;
 /// Linear light of an encoded value, both with full scale at 1.
 pub(super) type Curve = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
-/// Rows of a product with a colour as a column.
+/// Rows of a product with a color as a column.
 pub(super) type Matrix = [[f64; 3]; 3];
 
 /// Chromaticities x and y of white, red, green and blue.
@@ -21,13 +21,13 @@ pub(super) type Primaries = [[f64; 2]; 4];
 const D65: [f64; 2] = [0.3127, 0.3290];
 pub(super) const SRGB: Primaries = [D65, [0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
 
-/// What colours of a file are, as far as it says; by default sRGB in integers and linear light of the
+/// What colors of a file are, as far as it says; by default sRGB in integers and linear light of the
 /// sRGB primaries in floats.
 #[derive(Clone, Default)]
 pub(super) struct Space {
     /// One curve for each of red, green and blue.
     pub(super) curves: Option<[Curve; 3]>,
-    /// From linear colours to linear sRGB.
+    /// From linear colors to linear sRGB.
     pub(super) matrix: Option<Matrix>,
     /// From device values straight to encoded sRGB, in place of the other two.
     pub(super) table: Option<Arc<TransformF32Executor>>,
@@ -39,7 +39,7 @@ impl Space {
         Self { curves: Some([curve.clone(), curve.clone(), curve]), ..Self::default() }
     }
 
-    /// With other primaries; as it is if these make no space of colours.
+    /// With other primaries; as it is if these make no space of colors.
     pub(super) fn with_primaries(mut self, primaries: &Primaries) -> Self {
         self.matrix = to_srgb(primaries).filter(|matrix| !near_identity(matrix));
         self
@@ -55,7 +55,7 @@ impl Space {
     }
 }
 
-/// Reads an ICC profile for pictures of `channels` colours: 1 gray, 3 red, green and blue, 4 inks.
+/// Reads an ICC profile for pictures of `channels` colors: 1 gray, 3 red, green and blue, 4 inks.
 ///
 /// # Errors
 /// Why it cannot be used, as the end of a sentence.
@@ -86,7 +86,7 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
         let to_xyz = [of(|c| c.x), of(|c| c.y), of(|c| c.z)];
         // Both in the connection space, whose white is D50.
         let Some(from_xyz) = to_d50(&SRGB).and_then(|matrix| inverse(&matrix)) else {
-            return Err("its colours cannot be told apart".to_owned());
+            return Err("its colors cannot be told apart".to_owned());
         };
         let matrix = product(&from_xyz, &to_xyz);
         if matrix.iter().flatten().any(|value| !value.is_finite() || value.abs() > 100.0) {
@@ -131,13 +131,13 @@ fn near_identity(matrix: &Matrix) -> bool {
     (0..9).all(|i| (matrix[i / 3][i % 3] - f64::from(u8::from(i / 3 == i % 3))).abs() < 0.004)
 }
 
-/// From linear colours of these primaries to linear sRGB, white to white.
+/// From linear colors of these primaries to linear sRGB, white to white.
 fn to_srgb(primaries: &Primaries) -> Option<Matrix> {
     let matrix = product(&inverse(&to_d50(&SRGB)?)?, &to_d50(primaries)?);
     matrix.iter().flatten().all(|value| value.is_finite() && value.abs() < 100.0).then_some(matrix)
 }
 
-/// From linear colours to XYZ, their white taken to D50 as ICC profiles do (Bradford).
+/// From linear colors to XYZ, their white taken to D50 as ICC profiles do (Bradford).
 fn to_d50(&[white, red, green, blue]: &Primaries) -> Option<Matrix> {
     const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
     const BRADFORD: Matrix =

@@ -1,4 +1,4 @@
-//! JPEG: gray, colour or inks, with its profile and Exif data, and whole even if its end marker is lost.
+//! JPEG: gray, color or inks, with its profile and Exif data, and whole even if its end marker is lost.
 
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
@@ -46,11 +46,11 @@ pub(super) fn read<P: Pixel>(
         };
         // Inks by way of red and green and blue would be what the profile is there to avoid.
         let found = match stored {
-            ColorSpace::YCCK => Err("inks stored as colour differences are not supported".into()),
+            ColorSpace::YCCK => Err("inks stored as color differences are not supported".into()),
             _ => color::profile(profile, channels),
         };
         by_inks = inks && found.is_ok();
-        space = warned("its colour profile", found, &mut warnings);
+        space = warned("its color profile", found, &mut warnings);
     }
     let (output, colors) = match stored {
         ColorSpace::Luma => (ColorSpace::Luma, Colors::Gray),
@@ -134,7 +134,7 @@ struct Shape {
     /// Within a scan the byte FF is always followed by 00 or a restart marker, so FF D9 can only be the
     /// marker; before the scan it may belong to a thumbnail.
     ended: bool,
-    /// Whether pixels come in several passes, or each colour in a scan of its own.
+    /// Whether pixels come in several passes, or each color in a scan of its own.
     passes: bool,
     /// Whether Adobe's marker is there.
     adobe: bool,

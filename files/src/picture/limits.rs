@@ -3,7 +3,7 @@
 use super::PictureError;
 
 /// The most bytes that the decoded pixels and their importance may take together: one gibibyte, which
-/// is 150 million pixels of 8-bit colour.
+/// is 150 million pixels of 8-bit color.
 pub(super) const MEMORY_LIMIT: u64 = 1 << 30;
 
 /// The number of pixels, when decoding them to `bytes_per_pixel` bytes each, beside four bytes each of

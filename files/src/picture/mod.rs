@@ -48,7 +48,7 @@ pub struct Picture {
     pub warnings: Vec<String>,
 }
 
-/// The colours of a photograph.
+/// The colors of a photograph.
 #[derive(Debug)]
 pub struct ColorPicture {
     /// Pixels across.
@@ -219,7 +219,7 @@ pub fn read_layer(path: &Path, tone: Tone, layer: Option<&str>) -> Result<Pictur
     Ok(Picture { width, height, importance, range, warnings })
 }
 
-/// Reads the colours of a photograph, upright and in shape; of `tone` only the exposure counts.
+/// Reads the colors of a photograph, upright and in shape; of `tone` only the exposure counts.
 ///
 /// # Errors
 /// [`PictureError`].

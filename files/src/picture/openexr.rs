@@ -19,7 +19,7 @@ use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, limits};
 /// Red, green, blue and alpha, or luminance and alpha, as far as a layer has them.
 type Samples = [f32; 4];
 
-/// What [`Layer::slots`] says of an alpha channel, which follows the colours there are.
+/// What [`Layer::slots`] says of an alpha channel, which follows the colors there are.
 const ALPHA: usize = 3;
 
 /// Reads an OpenEXR file. The picture is the display window; where the layer does not reach it is
@@ -83,7 +83,7 @@ pub(super) fn read<P: Pixel>(
                 let channels = &header.channels.list;
                 let Some(channel) = channels.get(line.location.channel) else { continue };
                 if let Some(&Some(slot)) = slots.get(line.location.channel) {
-                    // Behind the luminance alone, or behind the three colours.
+                    // Behind the luminance alone, or behind the three colors.
                     let slot = if slot == ALPHA { colors.count() } else { slot };
                     take(&mut row, slot, channel, &line)?;
                 }
@@ -140,7 +140,7 @@ struct Layer<'a> {
 }
 
 impl<'a> Layer<'a> {
-    /// The layer called `name`; or the first without a name that has colours or luminance, or else the
+    /// The layer called `name`; or the first without a name that has colors or luminance, or else the
     /// only one that has.
     fn choose(headers: &'a [Header], name: Option<&str>) -> Result<Self, PictureError> {
         let mut found: Vec<(String, Self)> = Vec::new();
@@ -173,11 +173,11 @@ impl<'a> Layer<'a> {
             return match found.into_iter().find(|(name, _)| name == wanted) {
                 Some((_, layer)) => Ok(layer),
                 None => Err(unsupported(&format!(
-                    "no layer with colours is called {wanted}; there are {names}"
+                    "no layer with colors is called {wanted}; there are {names}"
                 ))),
             };
         }
-        // Colours that stand alone go before luminance, as before all that have a name.
+        // Colors that stand alone go before luminance, as before all that have a name.
         let plain = |layer: &Self, colors| {
             layer.colors == colors
                 && layer.slots.iter().zip(&layer.header.channels.list).any(|(slot, channel)| {
@@ -210,7 +210,7 @@ impl<'a> Layer<'a> {
     }
 }
 
-/// Where the channels of a layer belong, if all that its colours need are there.
+/// Where the channels of a layer belong, if all that its colors need are there.
 fn slots(header: &Header, prefix: &str, colors: Colors) -> Option<Vec<Option<usize>>> {
     let names: &[&str] = if colors == Colors::Gray { &["Y"] } else { &["R", "G", "B"] };
     let of = |channel: &ChannelDescription| {

@@ -1,4 +1,4 @@
-//! Portable float maps: gray or colour, from the bottom row up, of either byte order.
+//! Portable float maps: gray or color, from the bottom row up, of either byte order.
 
 use std::io::{BufRead as _, Read as _};
 

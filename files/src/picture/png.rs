@@ -1,4 +1,4 @@
-//! PNG: 1 to 16 bits, gray, colour or palette, with the colours that its chunks say.
+//! PNG: 1 to 16 bits, gray, color or palette, with the colors that its chunks say.
 
 use std::io::{Cursor, Read as _, Seek as _, SeekFrom};
 
@@ -93,7 +93,7 @@ fn read_chunks<P: Pixel>(
     }
 }
 
-/// The colours that the chunks say, the best-known first.
+/// The colors that the chunks say, the best-known first.
 fn space(info: &Info<'_>, colors: Colors, warnings: &mut Vec<String>) -> Space {
     if let Some(points) = info.coding_independent_code_points {
         let found = cicp::space(
@@ -105,7 +105,7 @@ fn space(info: &Info<'_>, colors: Colors, warnings: &mut Vec<String>) -> Space {
     }
     if let Some(profile) = &info.icc_profile {
         let found = color::profile(profile, colors.count());
-        return warned("its colour profile", found, warnings);
+        return warned("its color profile", found, warnings);
     }
     if info.srgb.is_some() {
         return Space::default();

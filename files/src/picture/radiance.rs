@@ -18,7 +18,7 @@ struct Header {
     width: usize,
     height: usize,
     orientation: Orientation,
-    /// What stored values were multiplied by, colour by colour.
+    /// What stored values were multiplied by, color by color.
     factor: [f64; 3],
     gamma: f64,
     /// Height of a pixel over its width.

@@ -54,9 +54,9 @@ fn decode<P: Pixel>(
         Ok(None) => Space::default(),
         Ok(Some(profile)) => {
             let found = color::profile(&profile, colors.count());
-            warned("its colour profile", found, &mut warnings)
+            warned("its color profile", found, &mut warnings)
         }
-        Err(error) => warned("its colour profile", Err(error.to_string()), &mut warnings),
+        Err(error) => warned("its color profile", Err(error.to_string()), &mut warnings),
     };
     let exif = decoder.exif_metadata().ok().flatten().unwrap_or_default();
 

@@ -31,11 +31,11 @@ const OLD_REDUCED: u32 = 2;
 /// Pages looked at.
 const MOST_PAGES: usize = 1000;
 
-/// Tags of camera files, whose pixels are not yet colours.
+/// Tags of camera files, whose pixels are not yet colors.
 const DNG_VERSION: u16 = 50706;
 
 /// Reads the largest page of a TIFF file that is not marked as a smaller version of another: gray,
-/// colour, CMYK or JPEG colour differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
+/// color, CMYK or JPEG color differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
 /// without alpha.
 pub(super) fn read<P: Pixel>(
     mut source: Source,
@@ -78,7 +78,7 @@ pub(super) fn read<P: Pixel>(
         None => Space::default(),
         Some(profile) => {
             let found = color::profile(&profile, file.colors.count());
-            warned("its colour profile", found, &mut warnings)
+            warned("its color profile", found, &mut warnings)
         }
     };
     let mut plane = Plane::new((file.width, file.height), orientation, P::NOTHING)?;
@@ -214,7 +214,7 @@ impl Layout {
             Some(UNASSOCIATED_ALPHA) => Alpha::Straight,
             _ => Alpha::None,
         };
-        // A fourth colour sample that no tag explains is alpha to most writers.
+        // A fourth color sample that no tag explains is alpha to most writers.
         let assumed = if tagged == Alpha::None { Alpha::Straight } else { tagged };
         let (colors, alpha) = match color {
             // Extra samples of a gray file make it "multiband".

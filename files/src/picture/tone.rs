@@ -47,9 +47,9 @@ impl Default for Levels {
 pub(super) enum Colors {
     Gray,
     Rgb,
-    /// Ink amounts, turned into red, green and blue without a colour profile.
+    /// Ink amounts, turned into red, green and blue without a color profile.
     Cmyk,
-    /// Rec. 601 full-range luma and colour differences, as in JPEG.
+    /// Rec. 601 full-range luma and color differences, as in JPEG.
     YCbCr,
 }
 
@@ -63,13 +63,13 @@ impl Colors {
     }
 }
 
-/// Whether a sample after the colours says how much of the pixel is covered, and how it was applied.
+/// Whether a sample after the colors says how much of the pixel is covered, and how it was applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Alpha {
     None,
-    /// Colours are those of the covered part.
+    /// Colors are those of the covered part.
     Straight,
-    /// Colours are already multiplied by the coverage.
+    /// Colors are already multiplied by the coverage.
     Associated,
 }
 
@@ -173,7 +173,7 @@ pub(super) struct Toner {
     levels: [Arc<[f64]>; 3],
     /// What float samples are multiplied by.
     exposure: f64,
-    /// Light to encoded values, where colours are mixed in light and followed encoded.
+    /// Light to encoded values, where colors are mixed in light and followed encoded.
     encode: Option<srgb::Encoder>,
     /// The least and greatest brightness of a float file so far.
     range: Cell<(f64, f64)>,
@@ -221,7 +221,7 @@ impl Toner {
         Self { tone, colors, alpha, space, levels, exposure, encode, range }
     }
 
-    /// How many samples a pixel has that count: its colours and its alpha, if any.
+    /// How many samples a pixel has that count: its colors and its alpha, if any.
     pub(super) fn samples(&self) -> usize {
         self.colors.count() + usize::from(self.alpha != Alpha::None)
     }
@@ -237,12 +237,12 @@ impl Toner {
         (least <= greatest).then_some((least, greatest))
     }
 
-    /// Importance, in 0..=1, of a pixel given by its colours and then its alpha, if any; `None` when
+    /// Importance, in 0..=1, of a pixel given by its colors and then its alpha, if any; `None` when
     /// one of these is a NaN or an infinity. Samples after those are ignored.
     ///
     /// What is not covered is paper: white, or black when dots are white.
     ///
-    /// `pixel` holds at least as many samples as the colours and alpha take.
+    /// `pixel` holds at least as many samples as the colors and alpha take.
     pub(super) fn importance<S: Sample>(&self, pixel: &[S]) -> Option<f32> {
         let (rgb, alpha) = self.working(pixel)?;
         if S::FLOAT {
@@ -278,13 +278,13 @@ impl Toner {
         Some(if self.tone.invert { brightness } else { 1.0 - brightness })
     }
 
-    /// The colour of the covered part in the working space, and how much is covered.
+    /// The color of the covered part in the working space, and how much is covered.
     fn straight<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
         let (rgb, alpha) = self.working(pixel)?;
         Some((self.uncovered(rgb, alpha), alpha))
     }
 
-    /// Colours without the coverage that they are multiplied by.
+    /// Colors without the coverage that they are multiplied by.
     fn uncovered(&self, rgb: [f64; 3], alpha: f64) -> [f64; 3] {
         if self.alpha == Alpha::Associated && alpha > 0.0 {
             rgb.map(|value| value / alpha)
@@ -300,7 +300,7 @@ impl Toner {
         }
     }
 
-    /// Colours as light (floats), or in the space that `tone` asks for (integers); and alpha.
+    /// Colors as light (floats), or in the space that `tone` asks for (integers); and alpha.
     fn working<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
         let count = self.colors.count();
         let alpha = match self.alpha {
@@ -343,7 +343,7 @@ impl Toner {
             }
             Colors::YCbCr => {
                 let [y, cb, cr] = [0, 1, 2].map(|i| pixel[i].fraction());
-                // The zero of a colour difference is half of full scale rounded up.
+                // The zero of a color difference is half of full scale rounded up.
                 let (cb, cr) = (cb - 128.0 / 255.0, cr - 128.0 / 255.0);
                 let rgb = [y + 1.402 * cr, y - 0.344136 * cb - 0.714136 * cr, y + 1.772 * cb];
                 [0, 1, 2].map(|i| self.encoded(i, rgb[i].clamp(0.0, 1.0)))
@@ -358,7 +358,7 @@ impl Toner {
         }
     }
 
-    /// A colour sample as light (floats or where colours are mixed), or in the space of `tone`.
+    /// A color sample as light (floats or where colors are mixed), or in the space of `tone`.
     fn value<S: Sample>(&self, channel: usize, sample: S) -> f64 {
         if S::FLOAT {
             let value = sample.fraction().max(0.0);
@@ -386,7 +386,7 @@ impl Toner {
 }
 
 impl Tone {
-    /// An encoded value in the space in which an integer file's colours are mixed.
+    /// An encoded value in the space in which an integer file's colors are mixed.
     fn working(self, encoded: f64) -> f64 {
         if self.linear { srgb::decode(encoded) } else { encoded }
     }
@@ -457,7 +457,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_weigh_as_in_rec_709() {
+    fn colors_weigh_as_in_rec_709() {
         for (pixel, weight) in
             [([255u8, 0, 0], 0.2126), ([0, 255, 0], 0.7152), ([0, 0, 255], 0.0722)]
         {
@@ -474,7 +474,7 @@ mod tests {
             let dark = importance(tone, Colors::Gray, Alpha::Straight, &[0u16, 0x8000]);
             assert!((dark - 0.5).abs() < 1e-4);
         }
-        // Associated colours are not multiplied again.
+        // Associated colors are not multiplied again.
         let rgba = [0.25f32, 0.25, 0.25, 0.5];
         assert_eq!(importance(LINEAR, Colors::Rgb, Alpha::Associated, &rgba), 0.25);
         assert_eq!(importance(LINEAR, Colors::Rgb, Alpha::Straight, &rgba), 0.375);
@@ -509,7 +509,7 @@ mod tests {
     }
 
     #[test]
-    fn inks_and_colour_differences_become_colours() {
+    fn inks_and_color_differences_become_colors() {
         let cmyk = |pixel: [u8; 4]| importance(DEFAULT, Colors::Cmyk, Alpha::None, &pixel);
         assert_eq!(cmyk([0, 0, 0, 0]), 0.0);
         assert_eq!(cmyk([0, 0, 0, 255]), 1.0);

@@ -35,7 +35,7 @@ fn write_table(count: usize) -> Result<(), Box<dyn std::error::Error>> {
 
     let rules = Tables::built_in().rules();
     let table = Displacements::from_bytes(include_bytes!("../../../tables/relaxed.bin"))?;
-    for (name, table) in [("relaxed", Some(&table)), ("fixed centres", None)] {
+    for (name, table) in [("relaxed", Some(&table)), ("fixed centers", None)] {
         let mut measured = Vec::new();
         for k in 0..16 {
             let mut random = Random::new(1, &[k]);
@@ -45,7 +45,7 @@ fn write_table(count: usize) -> Result<(), Box<dyn std::error::Error>> {
         print(&format!("ours, {name}, 16 densities"), &measured);
     }
 
-    // Sets of the unit square are measured inside it, so that border points have neighbours.
+    // Sets of the unit square are measured inside it, so that border points have neighbors.
     let window = Window::UNIT.shrunk(0.03)?;
     let sets = |make: &dyn Fn(u64) -> Vec<DVec2>| -> Vec<Evenness> {
         (0..SETS).filter_map(|seed| evenness(&make(seed), window).ok()).collect()

@@ -113,7 +113,7 @@ fn bar(sweeps: usize, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// The figures of the table beside those of fixed centres, on places that training never saw.
+/// The figures of the table beside those of fixed centers, on places that training never saw.
 fn description(rules: &Rules, table: &Displacements) -> Result<String, OutOfRange> {
     let mut text = String::new();
     // Writing to a string cannot fail.
@@ -132,7 +132,7 @@ fn description(rules: &Rules, table: &Displacements) -> Result<String, OutOfRang
     let _ = writeln!(
         text,
         "\nuniform density, the worst of {PLACES} windows of {} points\n\
-         \x20                 relaxed                    fixed centres\n\
+         \x20                 relaxed                    fixed centers\n\
          \x20  tau    lowE  dmean  dmin      lowE  dmean  dmin",
         evaluate::WINDOW_POINTS
     );

@@ -54,7 +54,7 @@ fn star_exact(points: &[DVec2]) -> f64 {
     let n = points.len() as f64;
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.x.total_cmp(&b.x));
-    // The y of the points so far, between 0 and 1: between neighbours no box changes its count.
+    // The y of the points so far, between 0 and 1: between neighbors no box changes its count.
     let mut ys = vec![0.0, 1.0];
     let mut worst = 0.0f64;
     for taken in 0..=sorted.len() {

@@ -188,7 +188,7 @@ fn partition(points: &mut [DVec2], first: impl Fn(&DVec2) -> bool) -> usize {
     count
 }
 
-/// The distance of each point to its nearest neighbour in units of the hexagonal lattice of the
+/// The distance of each point to its nearest neighbor in units of the hexagonal lattice of the
 /// density that the image asks for at the point: importance at its pixel × `density_per_importance`.
 /// Points on pixels of importance 0 are left out, as they have no unit.
 ///
@@ -226,7 +226,7 @@ pub fn share_on_zero(points: &[DVec2], image: &Raster<'_>) -> f64 {
 }
 
 /// Measures points against the image: variance in blocks of 64 and local nearest distances. Points
-/// outside the image serve as neighbours only.
+/// outside the image serve as neighbors only.
 ///
 /// # Errors
 /// As [`block_variance`] and [`local_distances`]; [`MeasureError::TooFew`] if all points lie on pixels

@@ -10,7 +10,7 @@
 //! | [`spectrum`]: power at low frequency | white noise | 1 | 0 |
 //! | [`fidelity`]: variance of counts in blocks | Poisson | 1 | about 0.03 |
 //!
-//! A [`Window`] keeps borders from biasing: points outside it serve as neighbours only.
+//! A [`Window`] keeps borders from biasing: points outside it serve as neighbors only.
 
 pub mod discrepancy;
 mod error;
@@ -90,7 +90,7 @@ impl Window {
     }
 }
 
-/// Distance between neighbours in a hexagonal lattice of `density` points a unit of area: √(2 / (√3·ρ)).
+/// Distance between neighbors in a hexagonal lattice of `density` points a unit of area: √(2 / (√3·ρ)).
 /// Infinite for the density 0, NaN for one below it.
 #[must_use]
 pub fn hexagonal_distance(density: f64) -> f64 {
@@ -111,7 +111,7 @@ pub struct Evenness {
 }
 
 /// Measures the points of a uniform density in `window`. Points outside it may be given and should be:
-/// a point at the border has its nearest neighbour there.
+/// a point at the border has its nearest neighbor there.
 ///
 /// Costs O(n log n) for the distances and O(n²) for the spectrum, 0.3 s for 16,384 points.
 ///

@@ -1,4 +1,4 @@
-//! Nearest-neighbour distances.
+//! Nearest-neighbor distances.
 
 use glam::DVec2;
 use rstar::RTree;

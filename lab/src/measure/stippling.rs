@@ -215,14 +215,14 @@ fn rendered(like: &Gray, dots: &[DVec2], radius: f64) -> Gray {
     let mut bits = vec![false; wide * high];
     let reach = radius * fine as f64;
     for dot in dots {
-        let centre = *dot * fine as f64;
-        let first = (centre.y - reach).floor().max(0.0) as usize;
-        let last = ((centre.y + reach).ceil().max(0.0) as usize).min(high - 1);
+        let center = *dot * fine as f64;
+        let first = (center.y - reach).floor().max(0.0) as usize;
+        let last = ((center.y + reach).ceil().max(0.0) as usize).min(high - 1);
         for y in first..=last {
-            let up = y as f64 + 0.5 - centre.y;
+            let up = y as f64 + 0.5 - center.y;
             let half = (reach * reach - up * up).max(0.0).sqrt();
-            let from = (centre.x - half - 0.5).ceil().max(0.0) as usize;
-            let to = (centre.x + half - 0.5).floor();
+            let from = (center.x - half - 0.5).ceil().max(0.0) as usize;
+            let to = (center.x + half - 0.5).floor();
             if half > 0.0 && to >= 0.0 {
                 let to = (to as usize + 1).min(wide);
                 bits[y * wide..][from.min(to)..to].fill(true);

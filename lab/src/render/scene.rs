@@ -105,7 +105,7 @@ fn hit(view: DVec3) -> Option<Hit> {
         return None;
     }
     let position = EYE + to_plane * view;
-    // A chessboard, one colour of which is glossy.
+    // A chessboard, one color of which is glossy.
     let dark = ((position.x.floor() + position.y.floor()) as i64).rem_euclid(2) == 0;
     let surface = if dark {
         Surface { diffuse: DVec3::new(0.12, 0.06, 0.04), glossy: 0.4, exponent: 60.0 }

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::Darkness;
 
-/// About `count` dots at the centres of pixels of a grid of its own.
+/// About `count` dots at the centers of pixels of a grid of its own.
 #[must_use]
 pub fn floyd_steinberg(darkness: &Darkness<'_>, count: usize) -> Vec<DVec2> {
     let scale = (count as f64 / darkness.sum()).sqrt();

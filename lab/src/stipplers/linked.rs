@@ -25,14 +25,14 @@ pub fn linked_voronoi(darkness: &Darkness<'_>, count: usize, seed: u64) -> Vec<D
         let mut next = Vec::with_capacity(2 * dots.len());
         let mut changes = 0;
         for cell in cells(darkness, &dots) {
-            let Some(centre) = cell.centroid() else {
+            let Some(center) = cell.centroid() else {
                 changes += 1;
                 continue;
             };
             if cell.mass < (1.0 - band) * mass {
                 changes += 1;
             } else if cell.mass <= (1.0 + band) * mass {
-                next.push(centre);
+                next.push(center);
             } else {
                 changes += 1;
                 // A little jitter keeps equal splits from meeting in one place.
@@ -40,7 +40,7 @@ pub fn linked_voronoi(darkness: &Darkness<'_>, count: usize, seed: u64) -> Vec<D
                 let jitter = 0.02 * radius * (random.unit() - 0.5);
                 let half = (0.5 * radius + jitter) * cell.longest();
                 let edge = darkness.size().map(f64::next_down);
-                next.extend([centre - half, centre + half].map(|dot| dot.clamp(DVec2::ZERO, edge)));
+                next.extend([center - half, center + half].map(|dot| dot.clamp(DVec2::ZERO, edge)));
             }
         }
         if next.is_empty() {

@@ -16,17 +16,17 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// The centre of the cell's darkness; `None` where it is white.
+    /// The center of the cell's darkness; `None` where it is white.
     pub(super) fn centroid(&self) -> Option<DVec2> {
         (self.mass > 0.0).then(|| self.moment / self.mass)
     }
 
     /// The direction in which the cell is longest, of length 1.
     pub(super) fn longest(&self) -> DVec2 {
-        let Some(centre) = self.centroid() else { return DVec2::X };
+        let Some(center) = self.centroid() else { return DVec2::X };
         let [xx, yy, xy] = self.spread.map(|spread| spread / self.mass);
         let (xx, yy, xy) =
-            (xx - centre.x * centre.x, yy - centre.y * centre.y, xy - centre.x * centre.y);
+            (xx - center.x * center.x, yy - center.y * center.y, xy - center.x * center.y);
         DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))
     }
 }

@@ -14,7 +14,7 @@ use twelvefold::bake::displacement::{DELTA, Displacements};
 use twelvefold::tiling::{OutOfRange, Rules};
 
 /// Points of uniform phase `tau` in a square window of about `count` of them, at a random place and
-/// angle, with a border of neighbours; relaxed by `table` or fixed. `None` for a count that is not
+/// angle, with a border of neighbors; relaxed by `table` or fixed. `None` for a count that is not
 /// positive and finite.
 ///
 /// # Errors
@@ -31,13 +31,13 @@ pub fn uniform_window(
     let Ok(window) = Window::new(DVec2::splat(-0.5 * side), DVec2::splat(side)) else {
         return Ok(None);
     };
-    // Neighbours within 4 spacings, and 4 edges from which points may move in.
+    // Neighbors within 4 spacings, and 4 edges from which points may move in.
     let radius = side * core::f64::consts::FRAC_1_SQRT_2 + 4.0 * spacing(field.0) + 4.0;
     let ground = Place::random(rules, radius, random)?;
     let (s, c) = libm::sincos(random.unit() * core::f64::consts::TAU);
     let points = sites(&ground, &field, Region::Disc(radius))?
         .iter()
-        .map(|site| table.map_or(site.centre, |table| site.relaxed(table)))
+        .map(|site| table.map_or(site.center, |table| site.relaxed(table)))
         .map(|p| DVec2::new(c * p.x - s * p.y, s * p.x + c * p.y))
         .collect();
     Ok(Some((points, window)))
@@ -64,7 +64,7 @@ pub fn phase(k: usize, n: usize) -> f64 {
     libm::pow(f64::from(DELTA), (k as f64 + 0.5) / n as f64)
 }
 
-/// The points of an image in pixels, with neighbours from a border around it.
+/// The points of an image in pixels, with neighbors from a border around it.
 ///
 /// # Errors
 /// [`OutOfRange`] for an image whose maximum is past some 10⁵ times its mean.
@@ -80,7 +80,7 @@ pub fn image_points<I: twelvefold::Importance + Sync>(
     let ground = Place::random(rules, half.length(), random)?;
     Ok(sites(&ground, image, Region::Rectangle(half))?
         .iter()
-        .map(|site| table.map_or(site.centre, |table| site.settled(table, image)))
+        .map(|site| table.map_or(site.center, |table| site.settled(table, image)))
         .map(|p| image.pixels(p))
         .collect())
 }
@@ -175,7 +175,7 @@ pub fn image_sweep(
             let image = Image::stippled(values.to_vec(), width, count, tau);
             image.map(|image| image_points(rules, table, &image, &mut random))
         } else {
-            // Fixed centres are accepted by the bilinear importance at them.
+            // Fixed centers are accepted by the bilinear importance at them.
             let image = Image::fixed(values.to_vec(), width, count, tau);
             image.map(|image| image_points(rules, None, &image, &mut random))
         };

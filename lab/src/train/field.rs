@@ -1,4 +1,4 @@
-//! Thresholds over the plane, in rank units: a tile centre p is a point if its rank < T(p).
+//! Thresholds over the plane, in rank units: a tile center p is a point if its rank < T(p).
 
 use glam::DVec2;
 
@@ -24,10 +24,10 @@ pub trait Field: Sync {
         0.0
     }
 
-    /// Where a point of this rank and tile centre goes that displacements moves to `moved`: a field with
+    /// Where a point of this rank and tile center goes that displacements moves to `moved`: a field with
     /// edges may hold it back.
-    fn settle(&self, centre: DVec2, rank: u64, moved: DVec2) -> DVec2 {
-        let _ = (centre, rank);
+    fn settle(&self, center: DVec2, rank: u64, moved: DVec2) -> DVec2 {
+        let _ = (center, rank);
         moved
     }
 }

@@ -68,7 +68,7 @@ pub struct Sum {
 /// Points of one patch, ready for many sweeps.
 #[derive(Clone, Debug)]
 pub struct Points {
-    centres: Vec<Vec2>,
+    centers: Vec<Vec2>,
     /// Edge · (cos, sin) of the grandparent's rotation.
     frames: Vec<Vec2>,
     reads: Vec<[(u32, f32); READS]>,
@@ -100,7 +100,7 @@ impl Points {
         let frame =
             |site: &Site| DVec2::from(cosine_and_sine(site.rotation)).as_vec2() * site.edge as f32;
         Self {
-            centres: sites.iter().map(|s| s.centre.as_vec2()).collect(),
+            centers: sites.iter().map(|s| s.center.as_vec2()).collect(),
             frames: sites.iter().map(frame).collect(),
             reads,
             spacings: sites.iter().map(|s| s.spacing as f32).collect(),
@@ -114,24 +114,24 @@ impl Points {
         }
     }
 
-    /// Moves the centres by vectors in the grandparents' frames, in edges: a part that is not trained.
+    /// Moves the centers by vectors in the grandparents' frames, in edges: a part that is not trained.
     pub fn displace(&mut self, vector: impl Fn(usize) -> Vec2) {
-        for (i, (centre, f)) in self.centres.iter_mut().zip(&self.frames).enumerate() {
+        for (i, (center, f)) in self.centers.iter_mut().zip(&self.frames).enumerate() {
             let v = vector(i);
-            *centre += Vec2::new(f.x * v.x - f.y * v.y, f.y * v.x + f.x * v.y);
+            *center += Vec2::new(f.x * v.x - f.y * v.y, f.y * v.x + f.x * v.y);
         }
     }
 
     /// How many points there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.centres.len()
+        self.centers.len()
     }
 
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.centres.is_empty()
+        self.centers.is_empty()
     }
 
     /// Moves the points by the table, lists pairs anew if asked to, and gathers forces.
@@ -144,7 +144,7 @@ impl Points {
                 }
             }
             let f = self.frames[i];
-            *position = self.centres[i] + Vec2::new(f.x * v.x - f.y * v.y, f.y * v.x + f.x * v.y);
+            *position = self.centers[i] + Vec2::new(f.x * v.x - f.y * v.y, f.y * v.x + f.x * v.y);
         }
         if list_pairs || self.pair_starts.is_empty() {
             self.list_pairs();
@@ -259,7 +259,7 @@ mod tests {
 
     fn site(x: f64, y: f64, rotation: u8) -> Site {
         Site {
-            centre: DVec2::new(x, y),
+            center: DVec2::new(x, y),
             rank: 0,
             level: 9,
             edge: 1.0,
@@ -275,7 +275,7 @@ mod tests {
     fn close_points_push_each_other_apart_in_their_own_frames() {
         let sites = [site(0.0, 0.0, 0), site(0.5, 0.0, 3), site(9.0, 0.0, 0)];
         let law = Law { sigma: 0.4, stiffness: 3.0, contact: 0.8 };
-        let entry = |s: &Site| [((s.centre.x * 2.0) as u32, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)];
+        let entry = |s: &Site| [((s.center.x * 2.0) as u32, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)];
         let mut points = Points::new(&sites, entry, |_| true);
         assert_eq!((points.first, points.sums.len(), points.len()), (0, 19, 3));
         points.sweep(&[[0.0; 2]; 19], &law.table(), true);
@@ -292,8 +292,8 @@ mod tests {
     fn the_table_moves_points_before_they_push() {
         let sites = [site(0.0, 0.0, 0), site(0.5, 0.0, 3)];
         let law = Law { sigma: 0.4, stiffness: 0.0, contact: 0.0 };
-        let entry = |s: &Site| [((s.centre.x * 2.0) as u32, 0.5), (2, 0.5), (0, 0.0), (0, 0.0)];
-        let mut points = Points::new(&sites, entry, |s| s.centre.x > 0.0);
+        let entry = |s: &Site| [((s.center.x * 2.0) as u32, 0.5), (2, 0.5), (0, 0.0), (0, 0.0)];
+        let mut points = Points::new(&sites, entry, |s| s.center.x > 0.0);
         // The second goes down by (2 + 0)/2 in its frame's x, which is the plane's y.
         points.sweep(&[[0.0; 2], [-2.0, 0.0], [0.0; 2]], &law.table(), true);
         let r = 1.25f64.sqrt();

@@ -1,7 +1,7 @@
 //! Images as fields: the library's own maps, read where the ground's tiles are.
 //!
 //! [`StippleMap`] says what decides on acceptance, on the phase and on the layer, and where a point may
-//! go; fixed centres are accepted by a [`BilinearMap`] of the same pixels.
+//! go; fixed centers are accepted by a [`BilinearMap`] of the same pixels.
 
 use glam::DVec2;
 
@@ -10,7 +10,7 @@ use super::place::density;
 use twelvefold::Disc;
 use twelvefold::importance::{BilinearMap, ImageMap, Importance, InvalidPixels, StippleMap};
 
-/// T from an image of importance; its centre lies at 0, x right, y down.
+/// T from an image of importance; its center lies at 0, x right, y down.
 #[derive(Clone, Debug)]
 pub struct Image<I> {
     importance: I,
@@ -47,7 +47,7 @@ impl Image<StippleMap> {
 }
 
 impl Image<BilinearMap> {
-    /// For fixed centres, otherwise as [`stippled`](Image::stippled).
+    /// For fixed centers, otherwise as [`stippled`](Image::stippled).
     #[must_use]
     pub fn fixed(importance: Vec<f32>, width: usize, count: f64, tau: f64) -> Option<Self> {
         Self::new(importance, width, count, tau, |image| Some(BilinearMap::new(image)))
@@ -100,7 +100,7 @@ impl<I: Importance + Sync> Field for Image<I> {
     fn bound(&self, p: DVec2, radius: f64) -> f64 {
         // A little more, for the rounding of places.
         let radius = radius * self.scale * (1.0 + 1e-9) + 1e-6;
-        let region = Disc { centre: self.pixels(p), radius };
+        let region = Disc { center: self.pixels(p), radius };
         self.importance.upper_bound(&region) * self.threshold_of_one
     }
 
@@ -113,10 +113,10 @@ impl<I: Importance + Sync> Field for Image<I> {
         self.importance.detail(self.pixels(p))
     }
 
-    fn settle(&self, centre: DVec2, rank: u64, moved: DVec2) -> DVec2 {
+    fn settle(&self, center: DVec2, rank: u64, moved: DVec2) -> DVec2 {
         let there = self.pixels(moved);
         let needed = rank as f64 / self.threshold_of_one;
-        let settled = self.importance.constrain(self.pixels(centre), there, needed);
+        let settled = self.importance.constrain(self.pixels(center), there, needed);
         if settled == there { moved } else { (settled - 0.5 * self.extent) / self.scale }
     }
 }
@@ -174,13 +174,13 @@ mod tests {
         let mut random = Random::new(4, &[]);
         let (mut kept, mut held) = (0, 0);
         for _ in 0..3000 {
-            let centre =
+            let center =
                 image.half_extent() * (2.0 * DVec2::new(random.unit(), random.unit()) - 1.0);
-            if !is_dark(centre) {
+            if !is_dark(center) {
                 continue;
             }
-            let moved = centre + (DVec2::new(random.unit(), random.unit()) - 0.5) * 2.0;
-            let settled = image.settle(centre, 1000, moved);
+            let moved = center + (DVec2::new(random.unit(), random.unit()) - 0.5) * 2.0;
+            let settled = image.settle(center, 1000, moved);
             assert!(is_dark(settled));
             if is_dark(moved) {
                 assert_eq!(settled, moved);

@@ -36,7 +36,7 @@ pub struct Stage {
     pub law: Law,
     /// The step, in spacings for a unit of mean force.
     pub step: f32,
-    /// The part of the way to the neighbour slots that a vector is pulled each sweep.
+    /// The part of the way to the neighbor slots that a vector is pulled each sweep.
     pub pull: f32,
     /// Whether step and pull fall to a tenth over the last 40 % of the sweeps.
     pub settle: bool,
@@ -46,7 +46,7 @@ pub struct Stage {
 const MOMENTUM: f32 = 0.7;
 
 /// The most that a vector moves in a sweep, in spacings: stiff contacts must not throw points across
-/// their neighbours.
+/// their neighbors.
 const LONGEST_STEP: f32 = 0.05;
 
 /// Added to an entry's weight, so that rare classes move slowly.
@@ -130,7 +130,7 @@ fn image_patch(
             }
             reads
         },
-        |site| site.detail > 0.0 && (site.centre.abs() + margin).cmplt(half).all(),
+        |site| site.detail > 0.0 && (site.center.abs() + margin).cmplt(half).all(),
     );
     points.displace(|i| {
         let v = smooth.read(&sites[i]);
@@ -219,7 +219,7 @@ fn patch(
             reads[..2].copy_from_slice(&table.reads(site));
             reads
         },
-        |site| site.centre.length() < radius,
+        |site| site.center.length() < radius,
     ))
 }
 

@@ -17,7 +17,7 @@ const LEVELS: usize = 14;
 /// 600 units see ancestors as random as those of an infinite tiling.
 pub const BASE_LEVEL: usize = 9;
 
-/// A place under a root `a`, at the centre of one of its tiles of level [`BASE_LEVEL`]. Positions are
+/// A place under a root `a`, at the center of one of its tiles of level [`BASE_LEVEL`]. Positions are
 /// relative to it, in edges of that level.
 #[derive(Clone, Debug)]
 pub struct Place<'a> {
@@ -38,10 +38,10 @@ pub enum Region {
 impl Region {
     /// Whether a disc reaches into the region; may err towards yes at corners.
     #[must_use]
-    pub fn touches(&self, centre: DVec2, radius: f64) -> bool {
+    pub fn touches(&self, center: DVec2, radius: f64) -> bool {
         match self {
-            Self::Disc(own) => centre.length_squared() <= (own + radius) * (own + radius),
-            Self::Rectangle(half) => (centre.abs() - *half).max_element() <= radius,
+            Self::Disc(own) => center.length_squared() <= (own + radius) * (own + radius),
+            Self::Rectangle(half) => (center.abs() - *half).max_element() <= radius,
         }
     }
 }
@@ -59,8 +59,8 @@ pub struct Node {
     pub classes: Classes,
     /// The rotations of its parent and grandparent (the root's, above the root).
     pub rotations: [u8; 2],
-    /// Its centre relative to the ground's place, in edges of [`BASE_LEVEL`].
-    pub centre: DVec2,
+    /// Its center relative to the ground's place, in edges of [`BASE_LEVEL`].
+    pub center: DVec2,
 }
 
 /// What the walk does below a node.
@@ -68,8 +68,8 @@ pub struct Node {
 pub struct Descend {
     /// Children are visited whose rank is below this.
     pub ranks_below: f64,
-    /// The centre child is visited, whatever its rank.
-    pub centre: bool,
+    /// The center child is visited, whatever its rank.
+    pub center: bool,
 }
 
 impl<'a> Place<'a> {
@@ -79,14 +79,14 @@ impl<'a> Place<'a> {
     /// [`OutOfRange`] cannot happen at these levels; it is passed on.
     pub fn random(rules: &'a Rules, reach: f64, random: &mut Random) -> Result<Self, OutOfRange> {
         let tiles = TileCounts::HEXAGON.all()[BASE_LEVEL];
-        // Every point within 0.2929 root edges of the root's centre is its descendant.
+        // Every point within 0.2929 root edges of the root's center is its descendant.
         let radius = (0.2928 * edge(0) - reach).max(0.0);
         loop {
             let rank = random.below(tiles);
             let Ok(code) = FCode::from_rank(TileType::A, BASE_LEVEL, rank) else {
                 return Err(OutOfRange);
             };
-            let origin = code.tile(rules)?.centre;
+            let origin = code.tile(rules)?.center;
             if DVec2::from(origin.to_f64()).length() <= radius {
                 return Self::at(rules, origin);
             }
@@ -124,7 +124,7 @@ impl<'a> Place<'a> {
             rank: 0,
             classes: Classes::root(TileType::A),
             rotations: [0; 2],
-            centre: -self.origins[0].to_f64_vec() * edge(0),
+            center: -self.origins[0].to_f64_vec() * edge(0),
         };
         self.walk_below(&root, region, visit)
     }
@@ -148,22 +148,22 @@ impl<'a> Place<'a> {
             .map_err(|_| OutOfRange)?;
             debug_assert!(digit > 0 || rank < tiles);
             let wanted =
-                if digit == 0 { descend.centre } else { (rank as f64) < descend.ranks_below };
+                if digit == 0 { descend.center } else { (rank as f64) < descend.ranks_below };
             if !wanted {
                 continue;
             }
             let Some(tile) = self.rules.child_of(&node.tile, digit)? else { continue };
             let origin = self.origins.get(level).ok_or(OutOfRange)?;
-            let centre = tile.centre.checked_sub(*origin)?.to_f64_vec() * edge(level);
+            let center = tile.center.checked_sub(*origin)?.to_f64_vec() * edge(level);
             // A tile's descendants lie within 1/√2 of its edge.
-            if region.touches(centre, edge(level) * core::f64::consts::FRAC_1_SQRT_2) {
+            if region.touches(center, edge(level) * core::f64::consts::FRAC_1_SQRT_2) {
                 let child = Node {
                     classes: node.classes.child(digit, tile.kind),
                     tile,
                     level,
                     rank,
                     rotations: [node.tile.rotation, node.rotations[0]],
-                    centre,
+                    center,
                 };
                 self.walk_below(&child, region, visit)?;
             }

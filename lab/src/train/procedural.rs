@@ -14,13 +14,13 @@ pub fn image(random: &mut Random) -> Vec<f32> {
     paint(&mut values, random, &fill, |_, _| true);
     for _ in 0..30 {
         fill = Fill::random(random);
-        let centre = [random.unit(), random.unit()].map(|u| (u * SIDE as f64) as f32);
+        let center = [random.unit(), random.unit()].map(|u| (u * SIDE as f64) as f32);
         let radius = 16.0 + 90.0 * random.unit() as f32;
         let (s, c) = libm::sincosf(core::f32::consts::TAU * random.unit() as f32);
         let stretch = 0.3 + 1.2 * random.unit() as f32;
         let is_disc = random.unit() < 0.5;
         paint(&mut values, random, &fill, |x, y| {
-            let (dx, dy) = (x - centre[0], y - centre[1]);
+            let (dx, dy) = (x - center[0], y - center[1]);
             let (u, v) = ((c * dx + s * dy) / radius, (c * dy - s * dx) / (radius * stretch));
             if is_disc { u * u + v * v < 1.0 } else { u.abs().max(v.abs()) < 0.8 }
         });

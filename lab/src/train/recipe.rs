@@ -139,7 +139,7 @@ impl Recipe {
                     passes: vec![
                         stiff([40e3, 50e3], 24, 0.35, (10.0, 0.86), 0.14),
                         stiff([40e3, 50e3], 30, 0.35, (30.0, 0.86), 0.05),
-                        // The more points, the rarer the neighbourhoods that are seen.
+                        // The more points, the rarer the neighborhoods that are seen.
                         stiff([60e3, 70e3], 36, 0.37, (70.0, 0.85), 0.022),
                     ],
                 },

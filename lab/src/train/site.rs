@@ -12,8 +12,8 @@ use twelvefold::tiling::numbers::SQRT_3;
 /// A point before it is moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
-    /// The tile's centre, in base edges.
-    pub centre: DVec2,
+    /// The tile's center, in base edges.
+    pub center: DVec2,
     /// Its rank.
     pub rank: u64,
     /// The level L with N_{L−1} < T ≤ N_L.
@@ -32,7 +32,7 @@ pub struct Site {
     pub spacing: f64,
 }
 
-/// All points of `field` whose tile centres lie in `region`, in the order of the walk.
+/// All points of `field` whose tile centers lie in `region`, in the order of the walk.
 ///
 /// # Errors
 /// [`OutOfRange`] when the field needs more than 5 levels below the base level.
@@ -44,27 +44,27 @@ pub fn sites(
     let mut sites = Vec::new();
     ground.walk(region, &mut |node| {
         let edge = super::place::edge(node.level);
-        let bound = field.bound(node.centre, edge * core::f64::consts::FRAC_1_SQRT_2);
+        let bound = field.bound(node.center, edge * core::f64::consts::FRAC_1_SQRT_2);
         let tiles = twelvefold::tiling::TileCounts::HEXAGON.all()[node.level] as f64;
-        if region.touches(node.centre, 0.0) {
-            let threshold = field.threshold(node.centre);
+        if region.touches(node.center, 0.0) {
+            let threshold = field.threshold(node.center);
             let (level, _, above) = level_of(threshold);
             if level == node.level && (node.rank as f64) < threshold {
-                let local = field.local(node.centre);
+                let local = field.local(node.center);
                 sites.push(Site {
-                    centre: node.centre,
+                    center: node.center,
                     rank: node.rank,
                     level,
                     edge,
                     rotation: node.rotations[1],
                     classes: node.classes,
                     tau: (local / above).clamp(1.0, twelvefold::bake::displacement::DELTA.into()),
-                    detail: field.detail(node.centre),
+                    detail: field.detail(node.center),
                     spacing: spacing(local),
                 });
             }
         }
-        Descend { ranks_below: bound, centre: bound > tiles }
+        Descend { ranks_below: bound, center: bound > tiles }
     })?;
     Ok(sites)
 }
@@ -74,7 +74,7 @@ impl Site {
     #[must_use]
     pub fn relaxed(&self, table: &Displacements) -> DVec2 {
         let vector = table.vector(&self.classes, self.tau, self.detail);
-        self.centre + turned(Vec2::from(vector).as_dvec2(), self.rotation) * self.edge
+        self.center + turned(Vec2::from(vector).as_dvec2(), self.rotation) * self.edge
     }
 }
 
@@ -82,7 +82,7 @@ impl Site {
     /// Where the point goes: [`relaxed`](Self::relaxed), held back by the field's edges.
     #[must_use]
     pub fn settled(&self, table: &Displacements, field: &impl Field) -> DVec2 {
-        field.settle(self.centre, self.rank, self.relaxed(table))
+        field.settle(self.center, self.rank, self.relaxed(table))
     }
 }
 
@@ -135,8 +135,8 @@ mod tests {
                 assert!((site.rank as f64) < field.0);
                 let code = FCode::from_rank(TileType::A, level, site.rank).unwrap();
                 let tile = code.tile(&rules).unwrap();
-                // Where the centre must lie, up to the ground's place, the same for all sites.
-                let place = DVec2::from(tile.centre.to_f64()) * site.edge - site.centre;
+                // Where the center must lie, up to the ground's place, the same for all sites.
+                let place = DVec2::from(tile.center.to_f64()) * site.edge - site.center;
                 assert!((*origin.get_or_insert(place) - place).length() < 1e-6);
                 let digits: Vec<u8> = code.oldest_first().collect();
                 let (older, newest) = digits.split_at(level - 2);

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::RUN;
 use super::round::{INTEGERS, clamp, floor_within};
 
-/// Pixels in rows, and where their centres lie.
+/// Pixels in rows, and where their centers lie.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::importance) struct Grid {
     pub(in crate::importance) width: usize,
@@ -26,8 +26,8 @@ pub(in crate::importance) struct Cells {
     weights: [[f64; RUN]; 2],
 }
 
-/// Along one axis, with the centres of pixels at integers: the pixel before a coordinate, the one
-/// after, and the part of the way between them, in 0..=1. Beyond the outermost centres, both are the
+/// Along one axis, with the centers of pixels at integers: the pixel before a coordinate, the one
+/// after, and the part of the way between them, in 0..=1. Beyond the outermost centers, both are the
 /// border's pixel.
 #[inline(always)]
 fn between(coordinate: f64, last: f64) -> (f64, f64, f64) {
@@ -53,7 +53,7 @@ fn mix([a, b, c, d]: [f64; 4], [s, t]: [f64; 2]) -> f64 {
 pub(in crate::importance) const SAME_SIDE: f64 = 0.8;
 
 /// The value between four pixels on one side of an edge, and the nearest one's where an edge parts them.
-/// Over the square between their centres, the mean is theirs either way.
+/// Over the square between their centers, the mean is theirs either way.
 #[inline(always)]
 fn mix_one_side([a, b, c, d]: [f64; 4], [s, t]: [f64; 2]) -> f64 {
     let smaller = |a: f64, b: f64| if a < b { a } else { b };

@@ -54,13 +54,13 @@ impl Canvas {
     }
 
     /// A disc.
-    pub(crate) fn circle(&mut self, centre: DVec2, radius: f64, style: &str) {
+    pub(crate) fn circle(&mut self, center: DVec2, radius: f64, style: &str) {
         push(
             &mut self.body,
             format_args!(
                 "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>\n",
-                Number(centre.x),
-                Number(centre.y),
+                Number(center.x),
+                Number(center.y),
                 Number(radius),
                 Style(style)
             ),
@@ -90,7 +90,7 @@ impl Canvas {
         );
     }
 
-    /// Defines a fill `url(#id)` that changes from one colour at the left to another at the right.
+    /// Defines a fill `url(#id)` that changes from one color at the left to another at the right.
     pub(crate) fn linear_gradient(&mut self, id: &str, left: &str, right: &str) {
         push(
             &mut self.body,
@@ -219,21 +219,21 @@ impl fmt::Display for Subscripts<'_> {
     }
 }
 
-/// Maps the plane onto a page: a point p lands at `origin` + `scale`·(p − `centre`), y flipped.
+/// Maps the plane onto a page: a point p lands at `origin` + `scale`·(p − `center`), y flipped.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     /// Pixels a unit of the plane.
     pub(crate) scale: f64,
     /// The point of the plane that lands on `origin`.
-    pub(crate) centre: DVec2,
-    /// Where `centre` lands on the page.
+    pub(crate) center: DVec2,
+    /// Where `center` lands on the page.
     pub(crate) origin: DVec2,
 }
 
 impl View {
     /// The page position of a point of the plane.
     pub(crate) fn map(&self, point: DVec2) -> DVec2 {
-        let offset = self.scale * (point - self.centre);
+        let offset = self.scale * (point - self.center);
         self.origin + DVec2::new(offset.x, -offset.y)
     }
 
@@ -266,9 +266,9 @@ mod tests {
     }
 
     #[test]
-    fn views_flip_y_about_their_centre() {
+    fn views_flip_y_about_their_center() {
         let view =
-            View { scale: 10.0, centre: DVec2::new(1.0, 2.0), origin: DVec2::new(100.0, 50.0) };
+            View { scale: 10.0, center: DVec2::new(1.0, 2.0), origin: DVec2::new(100.0, 50.0) };
         assert_eq!(view.map(DVec2::new(1.0, 2.0)), DVec2::new(100.0, 50.0));
         assert_eq!(view.map(DVec2::new(2.0, 3.0)), DVec2::new(110.0, 40.0));
     }

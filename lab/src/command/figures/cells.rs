@@ -17,15 +17,15 @@ pub(crate) struct Ranked {
 }
 
 impl Ranked {
-    /// The centre in edges of the tile's level.
-    pub(crate) fn centre(&self) -> DVec2 {
-        centre(&self.tile)
+    /// The center in edges of the tile's level.
+    pub(crate) fn center(&self) -> DVec2 {
+        center(&self.tile)
     }
 }
 
-/// The centre in edges of the tile's level.
-pub(crate) fn centre(tile: &Tile) -> DVec2 {
-    tile.centre.to_f64().into()
+/// The center in edges of the tile's level.
+pub(crate) fn center(tile: &Tile) -> DVec2 {
+    tile.center.to_f64().into()
 }
 
 /// The unit vector at `k`·30°; halves of k are the bisectors.
@@ -41,11 +41,11 @@ pub(crate) fn star(tile: &Tile) -> impl Iterator<Item = u8> {
 
 /// The corners of the tile's cell, anticlockwise, in edges of the tile's level.
 ///
-/// The cell is the dual of the vertex: its corners are the centres of the triangles and squares around
+/// The cell is the dual of the vertex: its corners are the centers of the triangles and squares around
 /// it, 1/√3 along the bisector of a triangle's 60°, 1/√2 along that of a square's 90°.
 pub(crate) fn cell(tile: &Tile) -> Vec<DVec2> {
     let star = tile.kind.star();
-    let centre = centre(tile);
+    let center = center(tile);
     let next = star.iter().cycle().skip(1);
     star.iter()
         .zip(next)
@@ -53,7 +53,7 @@ pub(crate) fn cell(tile: &Tile) -> Vec<DVec2> {
             let between = f64::from((second + 12 - first) % 12);
             let distance =
                 if between < 2.5 { 1.0 / 3f64.sqrt() } else { std::f64::consts::FRAC_1_SQRT_2 };
-            centre + distance * direction(f64::from(first + tile.rotation) + between / 2.0)
+            center + distance * direction(f64::from(first + tile.rotation) + between / 2.0)
         })
         .collect()
 }
@@ -61,24 +61,24 @@ pub(crate) fn cell(tile: &Tile) -> Vec<DVec2> {
 /// A rectangle of the plane, closed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Window {
-    pub(crate) centre: DVec2,
+    pub(crate) center: DVec2,
     pub(crate) size: DVec2,
 }
 
 impl Window {
     /// The distance of a point from the window, 0 inside.
     pub(crate) fn distance(&self, point: DVec2) -> f64 {
-        let past = (point - self.centre).abs() - self.size / 2.0;
+        let past = (point - self.center).abs() - self.size / 2.0;
         past.max(DVec2::ZERO).length()
     }
 
     /// The same window in a unit `factor` times as small.
     pub(crate) fn in_units_of(&self, factor: f64) -> Self {
-        Self { centre: self.centre * factor, size: self.size * factor }
+        Self { center: self.center * factor, size: self.size * factor }
     }
 }
 
-/// The tiles `levels` below a root whose centres lie within `margin` of the window, both in edges of
+/// The tiles `levels` below a root whose centers lie within `margin` of the window, both in edges of
 /// that level; depth first. Visits only subtrees that reach the window.
 ///
 /// # Errors
@@ -100,7 +100,7 @@ pub(crate) fn tiles_in(
 /// # Errors
 /// When the level is past the last.
 pub(crate) fn tiles_of(rules: &Rules, root: TileType, levels: usize) -> Result<Vec<Ranked>> {
-    let everywhere = Window { centre: DVec2::ZERO, size: DVec2::INFINITY };
+    let everywhere = Window { center: DVec2::ZERO, size: DVec2::INFINITY };
     tiles_in(rules, root, levels, &everywhere, 0.0)
 }
 
@@ -134,9 +134,9 @@ struct Search<'a> {
 impl Search<'_> {
     fn descend(&mut self, ranked: &Ranked, level: usize) -> Result<()> {
         let edge = LAMBDA.powi((self.levels - level) as i32);
-        // Descendants lie within edge/√2 of their ancestor's centre.
+        // Descendants lie within edge/√2 of their ancestor's center.
         let reach = if level == self.levels { 0.0 } else { edge * std::f64::consts::FRAC_1_SQRT_2 };
-        if self.window.distance(ranked.centre() * edge) > reach + self.margin {
+        if self.window.distance(ranked.center() * edge) > reach + self.margin {
             return Ok(());
         }
         if level == self.levels {
@@ -178,7 +178,7 @@ mod tests {
     fn the_cells_of_a_level_tile_the_plane() {
         let tables = twelvefold::Tables::built_in();
         // Inside 0.2929 of 52 edges, where all tiles descend from the root.
-        let window = Window { centre: DVec2::new(2.5, -1.0), size: DVec2::new(13.0, 12.0) };
+        let window = Window { center: DVec2::new(2.5, -1.0), size: DVec2::new(13.0, 12.0) };
         let tiles = tiles_in(&tables.rules(), TileType::A, 3, &window, 2.0).unwrap();
 
         // Every edge of a cell in the window is the edge of one other cell, in the other direction.
@@ -194,7 +194,7 @@ mod tests {
         }
         assert!(edges.values().all(|count| *count == 1), "cells overlap");
         let mut inside = 0;
-        for (_, corners) in cells.iter().filter(|(r, _)| window.distance(r.centre()) == 0.0) {
+        for (_, corners) in cells.iter().filter(|(r, _)| window.distance(r.center()) == 0.0) {
             for [a, b] in sides(corners) {
                 assert_eq!(edges.get(&(key(b), key(a))), Some(&1), "a gap beside {a} {b}");
             }
@@ -208,14 +208,14 @@ mod tests {
     #[test]
     fn a_window_finds_the_same_tiles_as_the_whole_level() {
         let tables = twelvefold::Tables::built_in();
-        let window = Window { centre: DVec2::new(-9.0, 4.0), size: DVec2::new(7.0, 30.0) };
+        let window = Window { center: DVec2::new(-9.0, 4.0), size: DVec2::new(7.0, 30.0) };
         for root in TileType::ALL {
             let found = tiles_in(&tables.rules(), root, 3, &window, 0.5).unwrap();
             let all = tiles_of(&tables.rules(), root, 3).unwrap();
             assert_eq!(all.len() as u64, TileCounts::of(root).at(3).unwrap());
             let expected: Vec<u64> = all
                 .iter()
-                .filter(|ranked| window.distance(ranked.centre()) <= 0.5)
+                .filter(|ranked| window.distance(ranked.center()) <= 0.5)
                 .map(|ranked| ranked.rank)
                 .collect();
             assert_eq!(found.iter().map(|ranked| ranked.rank).collect::<Vec<_>>(), expected);

@@ -28,7 +28,7 @@ pub(super) fn ramp(_: &Rules) -> Result<String> {
     let darkness = |x: f64| ((x - corner.x) / SIZE.x).clamp(0.0, 1.0);
     let importance = Function::new(
         |at: DVec2| darkness(at.x),
-        |region: &Disc| darkness(region.centre.x + region.radius),
+        |region: &Disc| darkness(region.center.x + region.radius),
     )
     .with_integral(domain.area() / 2.0);
     let placement = Placement::new(domain, 3);

@@ -6,7 +6,7 @@ use twelvefold_lab::paper::LAMBDA;
 
 use super::Result;
 use super::canvas::{Canvas, View};
-use super::cells::{cell, centre, direction, star};
+use super::cells::{cell, center, direction, star};
 
 const WIDTH: f64 = 1000.0;
 const LEGEND_HEIGHT: f64 = 236.0;
@@ -43,7 +43,7 @@ pub(super) fn production_rules(rules: &Rules) -> Result<String> {
     page.text(
         DVec2::new(WIDTH / 2.0, LEGEND_HEIGHT + 2.0 * PANEL.y + 22.0),
         "Blue: the outline of the parent. Wedge: a tile’s own direction 0. \
-         The children of the neighbours fill the gaps.",
+         The children of the neighbors fill the gaps.",
         "text-anchor=\"middle\" font-size=\"14\" fill=\"#333\"",
     );
     Ok(page.finish())
@@ -54,7 +54,7 @@ fn draw_type(page: &mut Canvas, kind: TileType) {
     let tile = Tile::root(kind);
     let column = WIDTH / 4.0;
     let origin = DVec2::new(column * (kind.index() as f64 + 0.5), 106.0);
-    let view = View { scale: 86.0, centre: DVec2::ZERO, origin };
+    let view = View { scale: 86.0, center: DVec2::ZERO, origin };
     page.polygon(
         &view.map_all(&cell(&tile)),
         &format!("fill=\"{}\" stroke=\"#222\" stroke-width=\"1.6\"", fill(kind)),
@@ -95,7 +95,7 @@ fn draw_rule(page: &mut Canvas, rules: &Rules, kind: TileType, corner: DVec2) ->
     );
     page.open(&format!("class=\"rule-{}\"", kind.letter()));
     let origin = corner + DVec2::new(PANEL.x / 2.0, PANEL.y / 2.0 + 18.0);
-    let view = View { scale: 81.0, centre: DVec2::ZERO, origin };
+    let view = View { scale: 81.0, center: DVec2::ZERO, origin };
     let parent = Tile::root(kind);
     let children: Vec<_> = (0..kind.child_count() as u8)
         .map(|digit| rules.child_of(&parent, digit)?.ok_or_else(|| "no such child".into()))
@@ -114,9 +114,9 @@ fn draw_rule(page: &mut Canvas, rules: &Rules, kind: TileType, corner: DVec2) ->
     for (digit, child) in children.iter().enumerate() {
         wedge(page, &view, child);
         page.text(
-            view.map(centre(child)) + DVec2::new(0.0, 7.0),
+            view.map(center(child)) + DVec2::new(0.0, 7.0),
             &format!("{}_{digit:X}", child.kind.letter()),
-            // A halo in the cell's colour keeps the parent's outline out of the letters.
+            // A halo in the cell's color keeps the parent's outline out of the letters.
             &format!(
                 "text-anchor=\"middle\" font-size=\"22\" paint-order=\"stroke\" \
                  stroke=\"{}\" stroke-width=\"5\" stroke-linejoin=\"round\"",
@@ -133,7 +133,7 @@ fn wedge(page: &mut Canvas, view: &View, tile: &Tile) {
     let ahead = direction(tile.rotation.into());
     let aside = ahead.perp();
     let corners = [0.48 * ahead, 0.31 * ahead + 0.05 * aside, 0.31 * ahead - 0.05 * aside];
-    let corners = corners.map(|corner| centre(tile) + corner);
+    let corners = corners.map(|corner| center(tile) + corner);
     page.polygon(&view.map_all(&corners), "fill=\"#222\"");
 }
 

@@ -27,7 +27,7 @@ pub(super) fn sequences(rules: &Rules) -> Result<String> {
     let mut page = Canvas::new(
         size,
         "Halton, Hammersley and dodecagonal points",
-        "Left to right, 1024 points each in a square. Colour shows the threshold, from 0, dark \
+        "Left to right, 1024 points each in a square. Color shows the threshold, from 0, dark \
          violet, to 1, yellow: the share of the sequence that comes before the point. The smallest \
          distance of two points is told in units of the hexagonal lattice of the same density.",
     );
@@ -46,7 +46,7 @@ pub(super) fn sequences(rules: &Rules) -> Result<String> {
 
 fn draw(page: &mut Canvas, name: &str, points: &[Point], corner: DVec2) {
     let view =
-        View { scale: SIDE, centre: DVec2::splat(0.5), origin: corner + DVec2::splat(SIDE / 2.0) };
+        View { scale: SIDE, center: DVec2::splat(0.5), origin: corner + DVec2::splat(SIDE / 2.0) };
     page.rectangle(corner, DVec2::splat(SIDE), "fill=\"#fff\" stroke=\"#888\"");
     page.open("class=\"points\"");
     for (point, threshold) in points {
@@ -97,7 +97,7 @@ fn radical_inverse(base: usize, mut index: usize) -> f64 {
     inverse
 }
 
-/// The distance of the closest two points, in distances of neighbours in the hexagonal lattice of the
+/// The distance of the closest two points, in distances of neighbors in the hexagonal lattice of the
 /// same density, the most that any set of points could have.
 fn smallest_distance(points: &[Point]) -> f64 {
     let lattice = (2.0 / (3f64.sqrt() * points.len() as f64)).sqrt();
@@ -124,19 +124,19 @@ fn hammersley() -> Vec<Point> {
     (0..POINTS).map(|i| (point(i), fraction(i))).collect()
 }
 
-/// The first tiles by rank in a square window, off the root's centre and turned.
+/// The first tiles by rank in a square window, off the root's center and turned.
 fn dodecagonal(rules: &Rules) -> Result<Vec<Point>> {
     const LEVELS: usize = 6;
     let edges = LAMBDA.powi(LEVELS as i32);
     // In root edges.
     let side = 0.06;
-    let window = Window { centre: DVec2::new(0.137, 0.104), size: DVec2::splat(side * SQRT_2) };
+    let window = Window { center: DVec2::new(0.137, 0.104), size: DVec2::splat(side * SQRT_2) };
     let turn = DVec2::from_angle(0.3);
     let tiles = tiles_in(rules, TileType::A, LEVELS, &window.in_units_of(edges), 0.0)?;
     let mut inside: Vec<(u64, DVec2)> = tiles
         .iter()
         .map(|ranked| {
-            let offset = ranked.centre() / edges - window.centre;
+            let offset = ranked.center() / edges - window.center;
             (ranked.rank, offset.rotate(turn) / side + 0.5)
         })
         .filter(|(_, point)| point.min_element() >= 0.0 && point.max_element() < 1.0)

@@ -10,12 +10,12 @@ use super::cells::{Ranked, Window, cell, tiles_in, tiles_of};
 
 const ROOT: TileType = TileType::A;
 
-/// The red square of the top row, in root edges. Within 0.2929 edges of the root's centre, where every
+/// The red square of the top row, in root edges. Within 0.2929 edges of the root's center, where every
 /// level descends from the root without a gap.
-const OUTER: Window = Window { centre: DVec2::new(0.05, 0.06), size: DVec2::splat(0.26) };
+const OUTER: Window = Window { center: DVec2::new(0.05, 0.06), size: DVec2::splat(0.26) };
 
 /// The red square of the lower row, one linear scaling factor smaller.
-const INNER: Window = Window { centre: DVec2::new(0.077, 0.04), size: DVec2::splat(0.26 / LAMBDA) };
+const INNER: Window = Window { center: DVec2::new(0.077, 0.04), size: DVec2::splat(0.26 / LAMBDA) };
 
 const WIDTH: f64 = 1000.0;
 const MARGIN: f64 = 14.0;
@@ -46,8 +46,8 @@ pub(super) fn thresholds(rules: &Rules) -> Result<String> {
     );
     for levels in 0..=2 {
         let origin = DVec2::new(MARGIN + COLUMN * (levels as f64 + 0.5), 12.0 + TOP_HEIGHT / 2.0);
-        // Descendants reach 0.71 root edges from the centre.
-        let view = View { scale: COLUMN / 1.42, centre: DVec2::ZERO, origin };
+        // Descendants reach 0.71 root edges from the center.
+        let view = View { scale: COLUMN / 1.42, center: DVec2::ZERO, origin };
         draw_whole(&mut page, rules, levels, &view)?;
     }
     let steps = [
@@ -77,7 +77,7 @@ fn gray(threshold: f64) -> String {
 /// The view of root edges as a view of level edges.
 fn finer(view: &View, levels: usize) -> View {
     let edges = LAMBDA.powi(levels as i32);
-    View { scale: view.scale / edges, centre: view.centre * edges, ..*view }
+    View { scale: view.scale / edges, center: view.center * edges, ..*view }
 }
 
 fn draw_cells(page: &mut Canvas, patch: &[Ranked], tiles: u64, view: &View) {
@@ -122,7 +122,7 @@ fn draw_numbers(page: &mut Canvas, patch: &[Ranked], tiles: u64, view: &View) {
         let threshold = threshold(ranked, tiles);
         let ink = if threshold < 0.5 { "#fff" } else { "#000" };
         page.text(
-            view.map(ranked.centre()) + DVec2::new(0.0, 5.0),
+            view.map(ranked.center()) + DVec2::new(0.0, 5.0),
             &format!("{threshold:.3}"),
             // The halo keeps the tile's outline out of the number.
             &format!("fill=\"{ink}\" stroke=\"{}\"", gray(threshold)),
@@ -133,7 +133,7 @@ fn draw_numbers(page: &mut Canvas, patch: &[Ranked], tiles: u64, view: &View) {
 
 fn draw_square(page: &mut Canvas, view: &View, window: &Window) {
     let half = window.size / 2.0;
-    let upper_left = view.map(window.centre + DVec2::new(-half.x, half.y));
+    let upper_left = view.map(window.center + DVec2::new(-half.x, half.y));
     page.rectangle(upper_left, window.size * view.scale, RED_FRAME);
 }
 
@@ -152,11 +152,11 @@ impl Step {
         let size = DVec2::splat(SIDE);
         let view = View {
             scale: SIDE / self.window.size.x,
-            centre: self.window.centre,
+            center: self.window.center,
             origin: corner + size / 2.0,
         };
         let window = self.window.in_units_of(LAMBDA.powi(self.levels as i32));
-        // Cells reach less than an edge past their centres.
+        // Cells reach less than an edge past their centers.
         let patch = tiles_in(rules, ROOT, self.levels, &window, 1.0)?;
         page.open_clipped(id, corner, size, &format!("class=\"zoomed\" {CELL}"));
         draw_cells(page, &patch, tiles, &finer(&view, self.levels));
@@ -166,7 +166,7 @@ impl Step {
             draw_square(page, &view, square);
         }
 
-        let inside = patch.iter().filter(|ranked| window.distance(ranked.centre()) == 0.0);
+        let inside = patch.iter().filter(|ranked| window.distance(ranked.center()) == 0.0);
         let mut thresholds: Vec<f64> = inside.map(|ranked| threshold(ranked, tiles)).collect();
         thresholds.sort_unstable_by(f64::total_cmp);
         draw_sorted(page, &thresholds, corner + DVec2::new(0.0, SIDE + 10.0));
@@ -203,10 +203,10 @@ mod tests {
         for window in [OUTER, INNER] {
             let half = window.size / 2.0;
             // With room for the cells of level 2 that reach into the square from outside.
-            let farthest = (window.centre.abs() + half).length() + 0.35 / LAMBDA.powi(2);
+            let farthest = (window.center.abs() + half).length() + 0.35 / LAMBDA.powi(2);
             assert!(farthest < 1.0 - std::f64::consts::FRAC_1_SQRT_2, "{farthest}");
         }
-        assert!((INNER.centre - OUTER.centre).abs().max_element() < 0.13 - INNER.size.x / 2.0);
+        assert!((INNER.center - OUTER.center).abs().max_element() < 0.13 - INNER.size.x / 2.0);
     }
 
     #[test]

@@ -20,17 +20,17 @@ const SEED: u64 = 1;
 /// Figure 1: "Triangle-and-squares aperiodic tiling (red lines) and its dual (blue lines)."
 pub(super) fn tiling_and_dual(rules: &Rules) -> Result<String> {
     const SCALE: f64 = 52.0;
-    // Off the root's centre, a six-fold rosette that no typical region has.
-    let window = Window { centre: DVec2::new(21.5, 12.0), size: DVec2::new(17.0, 11.0) };
+    // Off the root's center, a six-fold rosette that no typical region has.
+    let window = Window { center: DVec2::new(21.5, 12.0), size: DVec2::new(17.0, 11.0) };
     let margin = DVec2::splat(8.0);
     let size = window.size * SCALE;
     let mut page = Canvas::new(
         size + 2.0 * margin,
         "Triangle-and-squares aperiodic tiling (red) and its dual (blue)",
         "A patch of the square-triangle tiling, red, and the hexagons and pentagons of its dual, \
-         blue: each is a tile whose centre is a vertex of the red tiling.",
+         blue: each is a tile whose center is a vertex of the red tiling.",
     );
-    let view = View { scale: SCALE, centre: window.centre, origin: margin + size / 2.0 };
+    let view = View { scale: SCALE, center: window.center, origin: margin + size / 2.0 };
 
     page.open_clipped("patch", margin, size, "fill=\"none\" stroke-linejoin=\"round\"");
     // Edges and cells reach one edge past their vertex.
@@ -44,7 +44,7 @@ pub(super) fn tiling_and_dual(rules: &Rules) -> Result<String> {
     for ranked in &tiles {
         // Each edge has one end that sees it in a direction below 180°.
         for k in star(&ranked.tile).filter(|k| *k < 6) {
-            let ends = [ranked.centre(), ranked.centre() + direction(k.into())];
+            let ends = [ranked.center(), ranked.center() + direction(k.into())];
             page.polyline(&view.map_all(&ends), "");
         }
     }
@@ -62,9 +62,9 @@ pub(super) fn two_levels_and_points(rules: &Rules) -> Result<String> {
     let mut page = Canvas::new(
         DVec2::new(2.0 * SIDE + 3.0 * MARGIN, SIDE + 2.0 * MARGIN),
         "Two consecutive levels superimposed, and a typical distribution of dots",
-        "Left: the cells of one level, thick blue, over the cells of the next, thin. Each centre of \
-         the coarse level, a red ring, is again a centre of the fine one, a dot: it becomes the \
-         centre of a hexagon, yellow. Right: 2000 points.",
+        "Left: the cells of one level, thick blue, over the cells of the next, thin. Each center of \
+         the coarse level, a red ring, is again a center of the fine one, a dot: it becomes the \
+         center of a hexagon, yellow. Right: 2000 points.",
     );
     draw_two_levels(&mut page, rules, DVec2::splat(MARGIN), SIDE)?;
     draw_points(&mut page, DVec2::new(2.0 * MARGIN + SIDE, MARGIN), SIDE)?;
@@ -73,18 +73,18 @@ pub(super) fn two_levels_and_points(rules: &Rules) -> Result<String> {
 
 fn draw_two_levels(page: &mut Canvas, rules: &Rules, corner: DVec2, side: f64) -> Result<()> {
     // In edges of the fine level.
-    let window = Window { centre: DVec2::new(22.0, 13.2), size: DVec2::splat(15.0) };
+    let window = Window { center: DVec2::new(22.0, 13.2), size: DVec2::splat(15.0) };
     let fine =
-        View { scale: side / window.size.x, centre: window.centre, origin: corner + side / 2.0 };
-    let coarse = View { scale: fine.scale * LAMBDA, centre: fine.centre / LAMBDA, ..fine };
+        View { scale: side / window.size.x, center: window.center, origin: corner + side / 2.0 };
+    let coarse = View { scale: fine.scale * LAMBDA, center: fine.center / LAMBDA, ..fine };
     let children = tiles_in(rules, ROOT, LEVELS, &window, 1.0)?;
     let parents = tiles_in(rules, ROOT, LEVELS - 1, &window.in_units_of(1.0 / LAMBDA), 1.0)?;
 
     page.open_clipped("levels", corner, DVec2::splat(side), "stroke-linejoin=\"round\"");
     page.open("class=\"fine\" stroke=\"#7f8c9b\" stroke-width=\"1\" fill=\"none\"");
     for ranked in &children {
-        let is_centre = ranked.tile.kind == TileType::A;
-        let style = if is_centre { "fill=\"#fbe38e\"" } else { "" };
+        let is_center = ranked.tile.kind == TileType::A;
+        let style = if is_center { "fill=\"#fbe38e\"" } else { "" };
         page.polygon(&fine.map_all(&cell(&ranked.tile)), style);
     }
     page.close();
@@ -93,14 +93,14 @@ fn draw_two_levels(page: &mut Canvas, rules: &Rules, corner: DVec2, side: f64) -
         page.polygon(&coarse.map_all(&cell(&ranked.tile)), "");
     }
     page.close();
-    page.open("class=\"fine-centres\" fill=\"#222\"");
+    page.open("class=\"fine-centers\" fill=\"#222\"");
     for ranked in &children {
-        page.circle(fine.map(ranked.centre()), 1.9, "");
+        page.circle(fine.map(ranked.center()), 1.9, "");
     }
     page.close();
-    page.open("class=\"coarse-centres\" fill=\"none\" stroke=\"#d3312a\" stroke-width=\"1.8\"");
+    page.open("class=\"coarse-centers\" fill=\"none\" stroke=\"#d3312a\" stroke-width=\"1.8\"");
     for ranked in &parents {
-        page.circle(coarse.map(ranked.centre()), 5.2, "");
+        page.circle(coarse.map(ranked.center()), 5.2, "");
     }
     page.close();
     page.close();

@@ -182,7 +182,7 @@ impl Scene {
     }
 }
 
-/// Colours that are told apart on white; ours are drawn thick.
+/// Colors that are told apart on white; ours are drawn thick.
 fn style(i: usize, curve: &Curve) -> ShapeStyle {
     const COLORS: [(u8, u8, u8); 16] = [
         (0xd6, 0x27, 0x28),

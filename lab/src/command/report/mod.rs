@@ -159,7 +159,7 @@ const LIGHTING_REMARK: &str = "\
 Relaxed points are missing here on purpose: they are accepted in one place and lie in another, so that no weight \
 makes them an unbiased estimate, and `Sampling::weighted` answers with an error. \"Ours, few-probe\" prunes by seven \
 probes of a tile instead of a proven bound: the points that it loses, on small lights above all, are its error. The \
-post-stratified and self-normalised weights, and exactly n points, are slightly biased.";
+post-stratified and self-normalized weights, and exactly n points, are slightly biased.";
 
 const TONE_REMARK: &str = "\
 Where the dots are, blurred by 1.5 mean spacings, against the picture blurred alike; no weights. \"Ours, relaxed\" \

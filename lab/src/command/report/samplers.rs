@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use glam::DVec2;
 use twelvefold::estimate::{
-    SeamlessSet, Warp, Weighted, Weighting, exactly, normalise, post_stratify,
+    SeamlessSet, Warp, Weighted, Weighting, exactly, normalize, post_stratify,
 };
 use twelvefold::light::Sobol;
 use twelvefold::{
@@ -155,12 +155,12 @@ pub(crate) const UNIFORM: [Uniform; 15] = [
         },
     },
     Uniform {
-        name: "ours, normalised",
+        name: "ours, normalized",
         kind: Kind::Reweighted,
         make: |n, seed| {
             let mut points =
                 thresholded(Domain::UNIT, &Constant::ONE, n, seed, Weighting::Density)?;
-            normalise(&mut points, n as f64);
+            normalize(&mut points, n as f64);
             Some(set(points))
         },
     },
@@ -280,12 +280,12 @@ pub(crate) const FOLLOWING: [Following; 16] = [
         },
     },
     Following {
-        name: "ours, normalised",
+        name: "ours, normalized",
         kind: Kind::Reweighted,
         make: |target, n, seed| {
             let map = target.map;
             let mut points = thresholded(map.domain(), map, n, seed, Weighting::Density)?;
-            normalise(&mut points, n as f64);
+            normalize(&mut points, n as f64);
             Some(set(points))
         },
     },

@@ -20,25 +20,25 @@ pub(crate) const PLANES: [Plane; 4] = [
         name: "smooth bump",
         instance: |seed| {
             // Sixteen standard deviations fit: the rest is below rounding.
-            let centre = DVec2::splat(0.5) + 0.02 * Random::new(seed, &[]).point();
+            let center = DVec2::splat(0.5) + 0.02 * Random::new(seed, &[]).point();
             let width = 0.06;
-            let bump = move |p: DVec2| (-p.distance_squared(centre) / (2.0 * width * width)).exp();
+            let bump = move |p: DVec2| (-p.distance_squared(center) / (2.0 * width * width)).exp();
             (Box::new(bump), std::f64::consts::TAU * width * width)
         },
     },
     Plane {
         name: "disc",
         instance: |seed| {
-            let centre = DVec2::splat(0.4) + 0.2 * Random::new(seed, &[]).point();
+            let center = DVec2::splat(0.4) + 0.2 * Random::new(seed, &[]).point();
             let radius = 0.3;
-            let disc = move |p: DVec2| f64::from(p.distance(centre) < radius);
+            let disc = move |p: DVec2| f64::from(p.distance(center) < radius);
             (Box::new(disc), std::f64::consts::PI * radius * radius)
         },
     },
     Plane {
         name: "half-plane",
         instance: |seed| {
-            // Through the centre at any angle: half of the square.
+            // Through the center at any angle: half of the square.
             let angle = std::f64::consts::TAU * Random::new(seed, &[]).unit();
             let normal = DVec2::from_angle(angle);
             let half = move |p: DVec2| f64::from(normal.dot(p - 0.5) < 0.0);

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 use super::Table;
 
 /// Those of ten kinds that can be told apart, without the red of ours.
-const COLOURS: [RGBColor; 9] = [
+const COLORS: [RGBColor; 9] = [
     RGBColor(127, 127, 127),
     RGBColor(255, 127, 14),
     RGBColor(31, 119, 180),
@@ -51,8 +51,8 @@ pub(crate) fn draw(path: &Path, tables: &[&Table]) -> Result<(), Box<dyn Error>>
         for (i, row) in rows.enumerate() {
             // The default depth stands out.
             let ours = matches!(row.name.as_str(), "twelvefold" | "twelvefold, baked depth 3");
-            let colour = if ours { RED.mix(1.0) } else { COLOURS[i % COLOURS.len()].mix(1.0) };
-            let style = colour.stroke_width(if ours { 3 } else { 1 });
+            let color = if ours { RED.mix(1.0) } else { COLORS[i % COLORS.len()].mix(1.0) };
+            let style = color.stroke_width(if ours { 3 } else { 1 });
             chart
                 .draw_series(LineSeries::new(times(row), style).point_size(2))?
                 .label(&row.name)
