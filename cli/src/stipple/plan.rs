@@ -46,7 +46,7 @@ pub(crate) struct Plan {
     pub(crate) look: Look,
     pub(crate) order: Order,
     pub(crate) line: bool,
-    /// The least distance of two dots, in millimeters.
+    /// The least distance of two dots, in the sheet's unit.
     pub(crate) apart: Option<f64>,
     pub(crate) ink: Color,
 }
@@ -196,7 +196,13 @@ impl Plan {
             wish,
             order,
             line: paper.line,
-            apart: pen.map(|pen| if paper.line { pen } else { width }),
+            apart: match pen {
+                Some(pen) if paper.line => Some(pen),
+                Some(_) => Some(width),
+                // Dots of several pens lie apart at the width that is theirs by default.
+                None if paper.pens.is_some() && options.dot_size.is_none() => Some(width),
+                None => None,
+            },
             ink: if options.invert { Color::WHITE } else { Color::BLACK },
         })
     }
