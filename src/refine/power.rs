@@ -116,16 +116,24 @@ pub(super) struct Power<'a> {
     ink: &'a Ink<'a>,
     cells: &'a Cells,
     weights: &'a [f64],
-    /// The greatest of all weights, and of those in each block of grid cells and the eight about it.
-    heaviest: f64,
-    near: Vec<f64>,
-    /// Blocks a row.
-    across: usize,
+    /// From the finest on; the last is one block.
+    levels: Vec<Level>,
 }
 
-/// Grid cells along a block. Weights change slowly, and by more than a spacing's square from end to end of a
-/// picture: a bound for all of it alone would have dots ask far more neighbors.
-const BLOCK: usize = 8;
+/// The greatest weight about each place. Weights change slowly, and by many squared spacings from end to end of a
+/// picture: one bound for all of it would have dots ask far more neighbors.
+#[derive(Debug)]
+struct Level {
+    /// Grid cells along a block.
+    block: usize,
+    /// Blocks a row.
+    across: usize,
+    /// The greatest weight in each block and the eight about it: of all dots less than a block away.
+    near: Vec<f64>,
+}
+
+/// Blocks along a block of the next level.
+const FINER: usize = 4;
 
 impl<'a> Power<'a> {
     /// With the weights of the dots in their order in the cells, in squared pixels.
@@ -134,31 +142,62 @@ impl<'a> Power<'a> {
         cells: &'a Cells,
         weights: &'a [f64],
     ) -> Result<Self, RefineError> {
-        let [across, down] = cells.size().map(|cells| cells.div_ceil(BLOCK));
+        let mut levels = Vec::new();
+        let mut block = FINER;
+        let [mut across, mut down] = cells.size().map(|cells| cells.div_ceil(block));
         let mut own = filled(across * down, f64::NEG_INFINITY)?;
-        let mut heaviest = f64::NEG_INFINITY;
         for ((x, y), weight) in cells.x.iter().zip(&cells.y).zip(weights) {
             let [column, row] = cells.at(*x, *y);
-            let own = &mut own[row / BLOCK * across + column / BLOCK];
+            let own = &mut own[row / block * across + column / block];
             *own = own.max(*weight);
-            heaviest = heaviest.max(*weight);
         }
-        let mut near = filled(across * down, f64::NEG_INFINITY)?;
-        for (at, near) in near.iter_mut().enumerate() {
-            let (column, row) = (at % across, at / across);
-            for j in row.saturating_sub(1)..(row + 2).min(down) {
-                for i in column.saturating_sub(1)..(column + 2).min(across) {
-                    *near = near.max(own[j * across + i]);
+        loop {
+            let mut near = filled(across * down, f64::NEG_INFINITY)?;
+            for (at, near) in near.iter_mut().enumerate() {
+                let (column, row) = (at % across, at / across);
+                for j in row.saturating_sub(1)..(row + 2).min(down) {
+                    for i in column.saturating_sub(1)..(column + 2).min(across) {
+                        *near = near.max(own[j * across + i]);
+                    }
                 }
             }
+            levels.push(Level { block, across, near });
+            if across * down == 1 {
+                return Ok(Self { ink, cells, weights, levels });
+            }
+            let size = [across, down].map(|blocks| blocks.div_ceil(FINER));
+            let mut coarser = filled(size[0] * size[1], f64::NEG_INFINITY)?;
+            for (at, weight) in own.iter().enumerate() {
+                let to = at / across / FINER * size[0] + at % across / FINER;
+                coarser[to] = f64::max(coarser[to], *weight);
+            }
+            own = coarser;
+            [across, down] = size;
+            block = block.saturating_mul(FINER);
         }
-        Ok(Self { ink, cells, weights, heaviest, near, across })
     }
 
-    /// The greatest weight of all dots less than [`BLOCK`] cells away.
-    fn near(&self, x: f32, y: f32) -> f64 {
+    /// Whether no dot with `between` grid cells between it and a dot at (x, y) can cut a cell with a vertex at the
+    /// square root of `radius2`, if that dot has this weight.
+    fn enough(&self, [x, y]: [f32; 2], weight: f64, between: usize, radius2: f64) -> bool {
         let [column, row] = self.cells.at(x, y);
-        self.near[row / BLOCK * self.across + column / BLOCK]
+        let side = self.cells.side();
+        let mut from = 0;
+        for level in &self.levels {
+            let last = level.near.len() == 1;
+            if last || between < level.block {
+                let distance = between.max(from) as f64 * side;
+                let square = distance * distance;
+                let heaviest = level.near[row / level.block * level.across + column / level.block];
+                let cuts = square + weight - heaviest;
+                let none = distance > 0.0 && cuts > 0.0 && cuts * cuts > 4.0 * square * radius2;
+                if !none {
+                    return false;
+                }
+            }
+            from = level.block;
+        }
+        true
     }
 
     /// The cell of a dot where the spacing is `spacing`: all places x of the picture, no more than
@@ -191,20 +230,10 @@ impl<'a> Power<'a> {
             [high(columns[1], x), high(rows[1], y)],
         );
         let mut radius2 = cell.radius2();
-        let side = self.cells.side();
-        let near = self.near(self.cells.x[dot], self.cells.y[dot]);
-        // whether no dot that is as heavy as this and has `rings` cells between can cut
-        let beyond = |rings: usize, heaviest: f64, radius2: f64| {
-            let square = (rings as f64 * side) * (rings as f64 * side);
-            let cuts = square + weight - heaviest;
-            rings > 0 && cuts > 0.0 && cuts * cuts > 4.0 * square * radius2
-        };
+        let at = [self.cells.x[dot], self.cells.y[dot]];
         let mut ring = 0_usize;
         loop {
-            let between = ring.saturating_sub(1);
-            if beyond(between, if between < BLOCK { near } else { self.heaviest }, radius2)
-                && beyond(between.max(BLOCK), self.heaviest, radius2)
-            {
+            if self.enough(at, weight, ring.saturating_sub(1), radius2) {
                 return;
             }
             let mut inside = false;

@@ -189,3 +189,14 @@ fn the_summary_counts_the_points_and_quiet_says_nothing() {
     assert!(summary.starts_with(&format!("twelvefold: {count} points in ")), "{summary}");
     assert!(summary.ends_with(" points a second\n"), "{summary}");
 }
+
+#[test]
+fn the_best_dots_are_as_many_and_not_the_refined_ones() {
+    let refined = csv(&photograph(), &["--exact", "3000"]);
+    let best = csv(&photograph(), &["--exact", "3000", "--best"]);
+    assert_eq!(dots(&best).len(), 3000);
+    assert_ne!(best, refined);
+    let options = ["-o", "-", "--best", "--refine", "0"];
+    let complaint = crate::complaint_about("--best", &stipple(&photograph(), &options));
+    assert!(complaint.contains("--refine 0"), "{complaint}");
+}

@@ -1,0 +1,99 @@
+//! Dots that draw a picture.
+
+use glam::DVec2;
+use pyo3::prelude::*;
+use twelvefold::estimate::exactly;
+use twelvefold::refine::Refiner;
+use twelvefold::{Amount, ImageMap, InvalidPixels, Limits, Placement, Sampling, StippleMap};
+
+use crate::arrays::Image;
+use crate::work::{self, Stop};
+use crate::{arguments, error, output, tone};
+
+/// The most iterations, as in the program.
+const MOST_ITERATIONS: u32 = 1000;
+
+/// Dots of a picture; see the package's documentation.
+#[pyfunction]
+pub(crate) fn stipple<'py>(
+    py: Python<'py>,
+    image: &Bound<'py, PyAny>,
+    n: &Bound<'py, PyAny>,
+    refine: &Bound<'py, PyAny>,
+    exact: &Bound<'py, PyAny>,
+    seed: &Bound<'py, PyAny>,
+    invert: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let n = arguments::count(n)?;
+    let refine = arguments::whole("refine", refine, MOST_ITERATIONS)?;
+    let seed = arguments::seed(seed)?;
+    let exact = arguments::flag("exact", exact)?;
+    let invert = arguments::flag("invert", invert)?;
+    let image = tone::importance("image", image, invert)?;
+    if n > 0 && image.2.iter().all(|pixel| *pixel == 0.0) {
+        let blank = if invert { "black" } else { "white" };
+        return Err(error::value(format!("image is {blank}, which leaves no place for dots")));
+    }
+    let dots = work::run(py, move |stop| {
+        let mut dots = if exact {
+            exact_dots(copied(&image)?, n, seed)?
+        } else {
+            dots(copied(&image)?, n, seed)?
+        };
+        if refine > 0 {
+            refined(&image, &mut dots, refine, stop)?;
+        }
+        Ok(dots.iter().map(|dot| dot.as_vec2().to_array()).collect())
+    })?;
+    output::rows::<f32, 2>(py, dots)
+}
+
+/// An image for a map, which keeps its pixels.
+fn copied((width, height, pixels): &Image) -> PyResult<Image> {
+    let mut copy = Vec::new();
+    copy.try_reserve_exact(pixels.len()).map_err(|_| error::memory(size_of_val(&pixels[..])))?;
+    copy.extend_from_slice(pixels);
+    Ok((*width, *height, copy))
+}
+
+/// Exactly n dots, in progressive order.
+fn exact_dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
+    let map = ImageMap::new(width, height, pixels, InvalidPixels::Reject).map_err(error::map)?;
+    let placement = Placement::new(map.domain(), seed);
+    let made = exactly(&placement, &map, n, Limits::default()).map_err(error::exact)?;
+    Ok(made.iter().map(|point| point.position).collect())
+}
+
+/// About n dots, relaxed, in the order of the walk.
+fn dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
+    let n = n as f64;
+    let map =
+        StippleMap::new(width, height, pixels, InvalidPixels::Reject, n).map_err(error::map)?;
+    let placement = Placement::new(map.domain(), seed);
+    let sampling = Sampling::new(&placement, &map, Amount::Points(n)).map_err(error::sampling)?;
+    let sampling = sampling.relaxed().map_err(error::sampling)?;
+    let mut shards = twelvefold::Shards::<DVec2>::new();
+    shards.sample(&sampling).map_err(error::sampling)?;
+    let mut dots = Vec::new();
+    let bytes = shards.len().saturating_mul(size_of::<DVec2>());
+    dots.try_reserve_exact(shards.len()).map_err(|_| error::memory(bytes))?;
+    shards.parts().for_each(|part| dots.extend_from_slice(part));
+    Ok(dots)
+}
+
+/// Moves dots so that they draw the image better, as long as that is wanted.
+fn refined(
+    (width, height, pixels): &Image,
+    dots: &mut [DVec2],
+    iterations: u32,
+    stop: &Stop,
+) -> PyResult<()> {
+    let mut refiner = Refiner::new(*width, *height, pixels, dots).map_err(error::refine)?;
+    for _ in 0..iterations {
+        if stop.wanted() {
+            break;
+        }
+        refiner.step();
+    }
+    refiner.write(dots).map_err(error::refine)
+}
