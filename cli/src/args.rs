@@ -318,7 +318,7 @@ pub(crate) struct StippleOptions {
     pub(crate) output: PathBuf,
 
     /// What to write, whatever the name of the output: a drawing, or a list of places, of which `npy` is an
-    /// array of shape (dots, 2) and type float32.
+    /// array of shape (dots, 2) and type float32, with `--pens` (dots, 3).
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
 

@@ -161,7 +161,7 @@ impl<W: Write> Drawing for Svg<'_, W> {
             "<g inkscape:groupmode=\"layer\" inkscape:label=\"{}\" id=\"layer{}\" fill=\"none\" \
              stroke=\"{}\" stroke-width=\"{stroke:.*}\" stroke-linecap=\"round\" \
              stroke-linejoin=\"round\">",
-            escaped(&layer.name),
+            escaped(&label(&layer.name, self.layers)),
             self.layers,
             layer.color.svg(),
             // A thousandth of the radius is as little to see as a hundredth of the spacing.
@@ -207,6 +207,16 @@ impl<W: Write> Drawing for Svg<'_, W> {
     }
 }
 
+/// What a layer is called. vpype takes the first digits of a label for the layer's number, or else those of the id:
+/// `#c33` would be layer 33, and come last.
+fn label(name: &str, number: usize) -> String {
+    if name.contains(|c: char| c.is_ascii_digit()) {
+        format!("{number} {name}")
+    } else {
+        name.to_owned()
+    }
+}
+
 /// `text` as XML character data. Control characters, which XML 1.0 cannot hold, become U+FFFD.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -246,6 +256,22 @@ mod tests {
     #[test]
     fn a_file_name_cannot_break_the_markup() {
         assert_eq!(escaped("a<b>&\"c\"\u{1}\n"), "a&lt;b&gt;&amp;&quot;c&quot;\u{fffd} ");
+    }
+
+    #[test]
+    fn the_first_digits_of_a_label_or_else_of_the_id_are_the_layers_number() {
+        let look = Look::of_pixels(40, 30, 1.0, 1.0);
+        let mut bytes = Vec::new();
+        let mut svg = Box::new(Svg::new(&mut bytes, &look).unwrap());
+        for name in ["teal", "#c33", "black"] {
+            svg.layer(&Layer { name: name.into(), color: Color::BLACK }).unwrap();
+        }
+        svg.finish().unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        for (label, id) in [("teal", 1), ("2 #c33", 2), ("black", 3)] {
+            let layer = format!("inkscape:label=\"{label}\" id=\"layer{id}\"");
+            assert!(text.contains(&layer), "{text}");
+        }
     }
 
     #[test]

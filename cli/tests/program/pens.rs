@@ -109,7 +109,9 @@ fn every_pen_has_a_layer_light_to_dark_with_a_stroke_for_each_of_its_dots() {
     for layer in document.descendants().filter(|node| node.has_tag_name("g")) {
         let label = |node: &roxmltree::Node<'_, '_>| {
             let found = node.attributes().find(|attribute| attribute.name() == "label");
-            found.unwrap().value().to_owned()
+            let label = found.unwrap().value();
+            // Before what holds digits there is the layer's number.
+            label.rsplit(' ').next().unwrap().to_owned()
         };
         let name = label(&layer);
         let strokes: usize = layer
