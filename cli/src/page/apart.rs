@@ -18,7 +18,9 @@ const PUSH: f64 = 0.85;
 pub(crate) fn keep_apart(dots: &mut Vec<DVec2>, least: f64, sheet: &Sheet) -> Vec<bool> {
     // Rounding may bring two dots nearer by a step and a half.
     let wanted = least + 2.0 / STEPS;
+    // A photograph's rectangle is half-open.
     let [low, high] = sheet.picture();
+    let high = if sheet.is_page() { high } else { high - 1.0 / STEPS };
     let mut restless = vec![true; dots.len()];
     for _ in 0..ROUNDS {
         let grid = Grid::with_cells_of(dots, wanted);
@@ -38,7 +40,7 @@ pub(crate) fn keep_apart(dots: &mut Vec<DVec2>, least: f64, sheet: &Sheet) -> Ve
         }
     }
     for dot in dots.iter_mut() {
-        *dot = sheet.rounded(*dot);
+        *dot = sheet.rounded(*dot).min(high);
     }
     let grid = Grid::with_cells_of(dots, least);
     let mut kept = vec![true; dots.len()];

@@ -142,6 +142,22 @@ fn every_pen_has_a_layer_light_to_dark_with_a_stroke_for_each_of_its_dots() {
 }
 
 #[test]
+fn dots_of_pens_lie_apart_and_inside_without_a_page_too() {
+    let folder = TempDir::new().unwrap();
+    // As dense as can be up to the borders.
+    let photo = picture(&folder, 40, |x, _| if x < 0.5 { [0; 3] } else { [120, 20, 20] });
+    let options = &["--pens", "black,red", "--exact", "600"];
+    let table = csv(&photo, options);
+    let places: Vec<[f64; 2]> = penned(&table).into_iter().map(|(place, _)| place).collect();
+    assert_eq!(places.len(), 600);
+    assert!(places.iter().flatten().all(|t| (0.0..40.0).contains(t)));
+    let (svg, _) = drawn(&photo, "a.svg", options);
+    let svg = String::from_utf8(svg).unwrap();
+    let width = svg.split_once("stroke-width=\"").unwrap().1.split_once('"').unwrap().0;
+    assert!(least_distance(&places) >= width.parse::<f64>().unwrap() - 2e-3, "{width}");
+}
+
+#[test]
 fn exactly_so_many_dots_are_drawn_by_all_pens_together_the_same_every_time() {
     let folder = TempDir::new().unwrap();
     let photo = picture(&folder, 50, |x, y| [(255.0 * x) as u8, (255.0 * y) as u8, 128]);
