@@ -2,6 +2,9 @@
 
 use core::fmt;
 
+/// Classes at most: as many as an exchange of neighbors is worth its memory, a number a dot and class.
+pub(super) const MOST_CLASSES: usize = 64;
+
 /// Why dots could not be refined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -65,11 +68,7 @@ impl fmt::Display for RefineError {
                 write!(f, "a buffer of {found} for {expected} dots")
             }
             Self::Classes { count } => {
-                write!(
-                    f,
-                    "{count} classes of dots; from 1 to {} are possible",
-                    super::Classes::MOST
-                )
+                write!(f, "{count} classes of dots; from 1 to {} are possible", MOST_CLASSES)
             }
             Self::Memory { bytes } => write!(f, "refining needs {bytes} bytes more than there are"),
         }

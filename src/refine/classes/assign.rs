@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::super::cells::Dot;
 use super::super::error::{RefineError, reserve};
-use super::Classes;
+use super::planes::Classes;
 
 /// Levels of the curve: finer than dots lie.
 const LEVELS: u32 = 16;

@@ -7,24 +7,28 @@
 //! would have to carry a dot through its neighbors, and exchanges alone would have to do with the places
 //! that there are. Multi-class blue noise: Wei 2010; both energies at once: Qin et al. 2017.
 //!
-//! `assign`: a class for each dot. `exchange`: neighbors that change theirs.
+//! `planes`: what is wanted. `class`, with `pyramid`: one class's dots and what they are drawn by. `assign`: a
+//! class for each dot. `exchange`: neighbors that change theirs.
 
 mod assign;
+mod class;
 mod exchange;
+mod planes;
+mod pyramid;
 #[cfg(test)]
 mod tests;
 
 use alloc::vec::Vec;
 
-use super::cells::{Cells, Dot};
-use super::density::Density;
 use super::error::{RefineError, filled, reserve};
-use super::ink::Ink;
 use super::threads::{PART, for_parts};
-use super::{FURTHEST, MOMENTUM, STEP, Work, force, polish};
+use super::work::{self, FURTHEST, MOMENTUM, STEP, Work};
+use super::{force, polish};
 use crate::position::Position;
 use crate::simd::Simd;
-use exchange::{Exchange, Pyramid};
+use class::Class;
+use exchange::Exchange;
+pub use planes::Classes;
 
 /// Weight of the force of a dot's own class beside that of all dots, both in spacings of their own. Of four equal
 /// classes of 6,000 dots, mean nearest distance of all and of each: .920 and .81 at .15, .912 and .82 at .3,
@@ -32,60 +36,6 @@ use exchange::{Exchange, Pyramid};
 const CLASS_FORCE: f32 = 0.3;
 /// Rounds of exchanges before the first move.
 const FIRST_EXCHANGES: usize = 6;
-
-/// How much of each class every pixel wants, and their sum.
-#[derive(Clone, Debug)]
-pub struct Classes {
-    width: usize,
-    height: usize,
-    planes: Vec<Vec<f32>>,
-    total: Vec<f32>,
-}
-
-impl Classes {
-    /// The most classes.
-    pub const MOST: usize = 64;
-
-    /// Pictures of `width` × `height` pixels, one a class, row by row: importance, 0 where no dot of
-    /// the class may be. One unit is the same density of dots in all of them. O(pixels × classes).
-    ///
-    /// # Errors
-    /// No class or more than [`MOST`](Self::MOST); a picture of another size; a pixel that is NaN, infinite or
-    /// negative, or whose sum over the classes is infinite; too little memory.
-    pub fn new(width: usize, height: usize, planes: Vec<Vec<f32>>) -> Result<Self, RefineError> {
-        if planes.is_empty() || planes.len() > Self::MOST {
-            return Err(RefineError::Classes { count: planes.len() });
-        }
-        let mut total = filled(width.saturating_mul(height), 0.0_f32)?;
-        for plane in &planes {
-            Ink::new(width, height, plane)?;
-            for (sum, value) in total.iter_mut().zip(plane) {
-                *sum += value;
-            }
-        }
-        Ink::new(width, height, &total)?;
-        Ok(Self { width, height, planes, total })
-    }
-
-    /// The sum of all classes, row by row: what all dots together should draw, and what points to
-    /// begin with should be sampled from.
-    #[must_use]
-    pub fn total(&self) -> &[f32] {
-        &self.total
-    }
-
-    /// What every class wants, row by row.
-    #[must_use]
-    pub fn planes(&self) -> &[Vec<f32>] {
-        &self.planes
-    }
-
-    /// Columns and rows.
-    #[must_use]
-    pub fn size(&self) -> [usize; 2] {
-        [self.width, self.height]
-    }
-}
 
 /// Dots of several classes on their way.
 ///
@@ -127,36 +77,6 @@ struct ClassWork<'a> {
     exchange: Exchange,
     /// Where dots were before a move that asks nothing about classes.
     before: Vec<[f32; 2]>,
-}
-
-/// The dots of one class and where they should be.
-#[derive(Debug)]
-struct Class<'a> {
-    ink: Ink<'a>,
-    density: Density,
-    pyramid: Pyramid,
-    cells: Cells,
-    dots: Vec<Dot>,
-    sorted: Vec<Dot>,
-}
-
-impl<'a> Class<'a> {
-    fn new(classes: &'a Classes, plane: usize, count: usize) -> Result<Option<Self>, RefineError> {
-        let (width, height) = (classes.width, classes.height);
-        let Some(ink) = Ink::new(width, height, &classes.planes[plane])? else { return Ok(None) };
-        if count == 0 {
-            return Ok(None);
-        }
-        let density = Simd::detect().run(
-            #[inline(always)]
-            || Density::new(&ink, count),
-        )?;
-        let pyramid = Pyramid::new(&density)?;
-        let cells = Cells::new(&ink, count, density.usual_spacing)?;
-        let dots = filled(count, Dot::default())?;
-        let sorted = filled(count, Dot::default())?;
-        Ok(Some(Self { ink, density, pyramid, cells, dots, sorted }))
-    }
 }
 
 impl<'a> ClassRefiner<'a> {
@@ -238,7 +158,7 @@ impl<'a> ClassRefiner<'a> {
             return Err(RefineError::Length { expected: class_of.len(), found: classes.len() });
         }
         let dots = self.work.as_ref().map_or(&[][..], |work| &work.all.dots);
-        super::write(dots, points)?;
+        work::write(dots, points)?;
         classes.copy_from_slice(class_of);
         Ok(())
     }
