@@ -68,7 +68,7 @@ impl fmt::Display for RefineError {
                 write!(f, "a buffer of {found} for {expected} dots")
             }
             Self::Classes { count } => {
-                write!(f, "{count} classes of dots; from 1 to {} are possible", MOST_CLASSES)
+                write!(f, "{count} classes of dots; from 1 to {MOST_CLASSES} are possible")
             }
             Self::Memory { bytes } => write!(f, "refining needs {bytes} bytes more than there are"),
         }
