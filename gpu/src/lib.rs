@@ -16,6 +16,7 @@
 mod error;
 mod golden;
 mod keys;
+mod pass;
 mod plan;
 #[cfg(feature = "wgpu")]
 mod sampler;
@@ -25,11 +26,13 @@ mod shader;
 mod status;
 mod tables;
 mod tiles;
+mod uniform;
 
 pub use error::GpuError;
 pub use golden::{Golden, golden};
 pub use keys::{Keys, NO_KEY};
-pub use plan::{Binding, Capacity, Groups, Order, Pass, Plan, Points, RELAXED_ERROR};
+pub use pass::{Binding, Groups, Pass};
+pub use plan::{Capacity, Order, Plan, Points, RELAXED_ERROR};
 #[cfg(feature = "wgpu")]
 pub use sampler::{Importance, Sampler};
 #[cfg(feature = "wgpu")]

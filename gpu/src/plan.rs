@@ -6,8 +6,10 @@ use twelvefold::export::{Export, ToCaller};
 
 use crate::error::GpuError;
 use crate::keys::{KEY_LEVEL, Keys, count};
+use crate::pass::{Binding, Groups, Pass};
 use crate::tables::TableWords;
 use crate::tiles::{Reach, StartTiles, start_tiles};
+use crate::uniform::{Level, Uniform};
 
 /// The order of points in the output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -59,97 +61,6 @@ impl Capacity {
             subtiles: 1 << 16,
         }
     }
-}
-
-/// What a buffer or texture is, and its number in group 0 of the shaders.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Binding {
-    /// Uniform: [`Plan::uniform`].
-    Placed = 0,
-    /// Uniform: [`Plan::frame`].
-    Frame = 1,
-    /// Read-only storage: [`Plan::table`].
-    Table = 2,
-    /// Read-only storage: [`Plan::tiles`].
-    Tiles = 3,
-    /// Read-only storage of `f32` row by row, or a texture whose red channel counts.
-    Importance = 4,
-    /// Storage.
-    Pyramid = 5,
-    /// Storage.
-    Work = 6,
-    /// Storage, cleared before each frame. Words 0 to 3: points wanted, flags, candidates, subtiles.
-    Counters = 7,
-    /// Storage.
-    Masks = 8,
-    /// Storage: the output, two `f32` a point.
-    Positions = 9,
-    /// Storage: the output, a `u32` a point.
-    Keys = 10,
-    /// Storage, and indirect arguments of dispatches.
-    Arguments = 11,
-    /// Storage, and the output's indirect draw arguments.
-    Draw = 12,
-}
-
-/// How many workgroups a pass has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Groups {
-    /// So many in x, y and z.
-    Direct([u32; 3]),
-    /// As the beginning of [`Binding::Arguments`] says.
-    Indirect,
-}
-
-/// One dispatch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pass {
-    /// The entry point.
-    pub entry: &'static str,
-    /// What it binds, ascending.
-    pub bindings: &'static [Binding],
-    /// Its workgroups.
-    pub groups: Groups,
-}
-
-/// The placement's uniform, one level.
-#[repr(C)]
-#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Level {
-    edge: [f32; 2],
-    reach: f32,
-    margin: f32,
-    tiles: [u32; 2],
-    before: [u32; 2],
-    tiles_near: f32,
-    before_near: f32,
-    stride: u32,
-    stride_before: u32,
-    mip: u32,
-    pad: [u32; 3],
-}
-
-/// The placement's uniform, as `types.wgsl` has it.
-#[repr(C)]
-#[derive(Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Uniform {
-    texels: [u32; 2],
-    mips: u32,
-    tiles: u32,
-    texels_per_unit: [f32; 2],
-    extent: [f32; 2],
-    origin: [f32; 2],
-    corner: [f32; 2],
-    least: [f32; 2],
-    greatest: [f32; 2],
-    capacity: [u32; 4],
-    table: [u32; 4],
-    moves: [u32; 4],
-    more: [u32; 4],
-    work: [u32; 4],
-    mip: [[u32; 4]; 16],
-    levels: [Level; 17],
 }
 
 /// Everything that does not change from frame to frame.

@@ -3,7 +3,8 @@
 use wgpu::BufferUsages as Usage;
 
 use crate::error::GpuError;
-use crate::plan::{Binding, Groups, Plan};
+use crate::pass::{Binding, Groups};
+use crate::plan::Plan;
 use crate::shader::{Arithmetic, Source, wgsl};
 use crate::status::Status;
 

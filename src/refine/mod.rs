@@ -141,11 +141,22 @@ pub fn refine<P: Position>(
     pixels: &[f32],
     iterations: usize,
 ) -> Result<(), RefineError> {
+    stepped(points, width, height, pixels, iterations)?.write(points)
+}
+
+/// A refiner of points after some steps.
+fn stepped<'a, P: Position>(
+    points: &[P],
+    width: usize,
+    height: usize,
+    pixels: &'a [f32],
+    iterations: usize,
+) -> Result<Refiner<'a>, RefineError> {
     let mut refiner = Refiner::new(width, height, pixels, points)?;
     for _ in 0..iterations {
         refiner.step();
     }
-    refiner.write(points)
+    Ok(refiner)
 }
 
 /// [`refine`], and then [`Refiner::polish`]: the best that dots can draw a picture, in three times the time.
@@ -174,10 +185,7 @@ pub fn best<P: Position>(
     pixels: &[f32],
     iterations: usize,
 ) -> Result<(), RefineError> {
-    let mut refiner = Refiner::new(width, height, pixels, points)?;
-    for _ in 0..iterations {
-        refiner.step();
-    }
+    let mut refiner = stepped(points, width, height, pixels, iterations)?;
     refiner.polish()?;
     refiner.write(points)
 }

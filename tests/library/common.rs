@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 use twelvefold::{
-    EnvironmentMap, ImageMap, Importance, InvalidPixels, Pixels, Sampling, SamplingError, Tables,
-    bake,
+    EnvironmentMap, ImageMap, Importance, InvalidPixels, Limits, Pixels, Sampling, SamplingError,
+    Tables, bake,
 };
 
 /// All points as (rank, position), in the order of their ranks.
@@ -65,4 +65,9 @@ pub(crate) fn every_depth() -> &'static [Tables<'static>] {
             |depth| Tables::from_bytes(bake::bake(&rules, depth, None).unwrap().leak()).unwrap();
         (1..=bake::MAX_DEPTH).map(bake).collect()
     })
+}
+
+/// Limits that expect everything and allow few tiles.
+pub(crate) fn few_tiles() -> Limits {
+    Limits { points: u64::MAX, tiles: 20_000 }
 }

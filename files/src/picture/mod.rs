@@ -11,10 +11,12 @@ mod jpeg;
 mod limits;
 mod openexr;
 mod pfm;
+mod pixel;
 mod plane;
 mod png;
 mod radiance;
 mod raster;
+mod sample;
 mod source;
 pub mod srgb;
 mod tiff;
@@ -29,9 +31,11 @@ use std::path::Path;
 pub use format::Format;
 pub use tone::{Levels, Tone};
 
+use pixel::Pixel;
 use plane::Decoded;
+use sample::{Alpha, Colors, Sample};
 use source::Source;
-use tone::{Alpha, Colors, Pixel, Sample, Toner};
+use tone::Toner;
 
 /// How many dots each pixel of a photograph deserves.
 #[derive(Debug)]

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use super::color::{self, Curve, Space};
+use super::sample::{Alpha, Colors, Sample};
 use super::srgb;
 
 /// Rec. 709 weights of red, green and blue in luma and in luminance.
@@ -42,132 +43,12 @@ impl Default for Levels {
     }
 }
 
-/// What a pixel's samples mean, in file order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Colors {
-    Gray,
-    Rgb,
-    /// Ink amounts, turned into red, green and blue without a color profile.
-    Cmyk,
-    /// Rec. 601 full-range luma and color differences, as in JPEG.
-    YCbCr,
-}
-
-impl Colors {
-    pub(super) fn count(self) -> usize {
-        match self {
-            Self::Gray => 1,
-            Self::Rgb | Self::YCbCr => 3,
-            Self::Cmyk => 4,
-        }
-    }
-}
-
-/// Whether a sample after the colors says how much of the pixel is covered, and how it was applied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Alpha {
-    None,
-    /// Colors are those of the covered part.
-    Straight,
-    /// Colors are already multiplied by the coverage.
-    Associated,
-}
-
-/// One sample of a file.
-pub(super) trait Sample: Copy {
-    /// Whether values are linear light and may lie outside 0 to 1; if not, they are sRGB-encoded.
-    const FLOAT: bool;
-    /// The value with full scale at 1; for floats, the value.
-    fn fraction(self) -> f64;
-    /// Index in a table with an entry for each possible value, where such a table is small.
-    fn index(self) -> Option<usize>;
-}
-
-macro_rules! sample {
-    ($type:ty, float: $float:literal, fraction: $fraction:expr, index: $index:expr) => {
-        impl Sample for $type {
-            const FLOAT: bool = $float;
-            fn fraction(self) -> f64 {
-                let fraction: fn($type) -> f64 = $fraction;
-                fraction(self)
-            }
-            fn index(self) -> Option<usize> {
-                let index: fn($type) -> Option<usize> = $index;
-                index(self)
-            }
-        }
-    };
-}
-sample!(u8, float: false, fraction: |s| f64::from(s) / 255.0, index: |s| Some(usize::from(s)));
-sample!(u16, float: false, fraction: |s| f64::from(s) / 65535.0, index: |s| Some(usize::from(s)));
-sample!(u32, float: false, fraction: |s| f64::from(s) / f64::from(u32::MAX), index: |_| None);
-sample!(u64, float: false, fraction: |s| s as f64 / u64::MAX as f64, index: |_| None);
-sample!(exr::prelude::f16, float: true, fraction: |s| s.to_f64(), index: |_| None);
-sample!(f32, float: true, fraction: f64::from, index: |_| None);
-sample!(f64, float: true, fraction: |s| s, index: |_| None);
-
-/// What a pixel becomes.
-pub(super) trait Pixel: Copy {
-    /// What a pixel is that the file does not hold: transparent if it has alpha, black if not.
-    const NOTHING: Self;
-    /// From the samples of a pixel, as for [`Toner::importance`].
-    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self>;
-    /// A weighted mean's next term.
-    fn plus(self, other: Self, weight: f32) -> Self;
-}
-
-impl Pixel for f32 {
-    const NOTHING: Self = 0.0;
-
-    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
-        toner.importance(samples)
-    }
-
-    fn plus(self, other: Self, weight: f32) -> Self {
-        self + other * weight
-    }
-}
-
-/// Radiance: linear red, green and blue as stored, alpha aside.
-impl Pixel for [f32; 3] {
-    const NOTHING: Self = [0.0; 3];
-
-    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
-        let color = match toner.colors {
-            Colors::Gray => [samples[0].fraction(); 3],
-            _ => [0, 1, 2].map(|i| samples[i].fraction()),
-        };
-        let color = toner.space.matrix.map_or(color, |matrix| color::apply(&matrix, color));
-        Some(color.map(|value| value as f32))
-    }
-
-    fn plus(self, other: Self, weight: f32) -> Self {
-        [0, 1, 2].map(|i| self[i] + other[i] * weight)
-    }
-}
-
-/// Linear sRGB light, at least 0, of the covered part of a pixel; and how much of it is covered.
-impl Pixel for [f32; 4] {
-    const NOTHING: Self = [0.0; 4];
-
-    fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
-        let (color, alpha) = toner.straight(samples)?;
-        let light = |value: f64| if S::FLOAT { value } else { toner.tone.light(value) };
-        let [red, green, blue] = color.map(|value| light(value) as f32);
-        Some([red, green, blue, alpha as f32])
-    }
-
-    fn plus(self, other: Self, weight: f32) -> Self {
-        [0, 1, 2, 3].map(|i| self[i] + other[i] * weight)
-    }
-}
-
 /// Turns the pixels of one file into what is asked for.
 pub(super) struct Toner {
-    tone: Tone,
-    colors: Colors,
+    pub(super) tone: Tone,
+    pub(super) colors: Colors,
     alpha: Alpha,
-    space: Space,
+    pub(super) space: Space,
     /// Working values of the samples 0, 1, 2 … of an 8- or 16-bit file; of red, of green and of blue
     /// where their curves differ.
     levels: [Arc<[f64]>; 3],
@@ -279,7 +160,7 @@ impl Toner {
     }
 
     /// The color of the covered part in the working space, and how much is covered.
-    fn straight<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
+    pub(super) fn straight<S: Sample>(&self, pixel: &[S]) -> Option<([f64; 3], f64)> {
         let (rgb, alpha) = self.working(pixel)?;
         Some((self.uncovered(rgb, alpha), alpha))
     }
@@ -397,7 +278,7 @@ impl Tone {
     }
 
     /// The light of a value in that space.
-    fn light(self, working: f64) -> f64 {
+    pub(super) fn light(self, working: f64) -> f64 {
         if self.linear { working } else { srgb::decode(working.clamp(0.0, 1.0)) }
     }
 
@@ -411,6 +292,7 @@ impl Tone {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pixel::Pixel;
     use super::*;
 
     const DEFAULT: Tone = Tone { linear: false, invert: false, levels: None, exposure: None };

@@ -1,5 +1,7 @@
 //! The position formula's golden vectors, on CPU and GPU.
 
+use std::fmt::Write;
+
 use glam::DVec2;
 use twelvefold::export::{Export, position};
 use twelvefold::{Domain, Placement};
@@ -32,11 +34,24 @@ fn golden_positions_are_the_gpus_but_not_plainly() {
     }
 }
 
-/// Prints new vectors, for a formula that was changed on purpose:
-/// `cargo test -p twelvefold-gpu --test gpu print_golden -- --ignored --nocapture | grep '^[0-9a-f]\{8\} '`.
+/// They are made here, so that a formula that is changed on purpose can renew them:
+/// `TWELVEFOLD_BLESS=1 cargo test -p twelvefold-gpu --test gpu the_committed_vectors`.
 #[test]
-#[ignore = "prints the vectors; the other tests compare them"]
-fn print_golden() {
+fn the_committed_vectors_are_those_of_today() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/golden.txt");
+    let made = vectors();
+    if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
+        return std::fs::write(path, made).unwrap();
+    }
+    let committed = std::fs::read_to_string(path).unwrap();
+    let different = made.lines().zip(committed.lines()).find(|(made, committed)| made != committed);
+    assert_eq!(different, None);
+    assert_eq!(made.lines().count(), committed.lines().count());
+}
+
+/// A line for each: placements' own numbers of every level, and integers from a generator.
+fn vectors() -> String {
+    let mut text = String::new();
     let mut state = 1u64;
     let mut next = || {
         state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(0x1405_7b7e_f767_814f);
@@ -56,8 +71,9 @@ fn print_golden() {
         let place = position(single(origin), single(half_edge), at).to_array().map(f32::to_bits);
         let [u, v, p, q] = at;
         for word in origin.iter().chain(&half_edge).chain(&place) {
-            print!("{word:08x} ");
+            write!(text, "{word:08x} ").unwrap();
         }
-        println!("{u} {v} {p} {q}");
+        writeln!(text, "{u} {v} {p} {q}").unwrap();
     }
+    text
 }
