@@ -10,6 +10,14 @@ pub(super) const REACH: f32 = 1.5;
 pub(super) const PULL: f32 = 1.0;
 /// Both forces are gradients of the kernel (1 − u²)⁴ · 5/(π R²), whose weight grows as its reach shrinks.
 const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PULL);
+/// What a darker pixel pulls with, at most, on a dot on flat ground, in the ground's own tone. The pull's sharpening
+/// draws dots across an edge; where the ground is flat right up to it there is nothing to sharpen, and the dots are
+/// missing there. Between tones of 1 : 2, the dark part had 1.2 % too many of 5,000 dots, .9 of 15,000, and has .2.
+/// At 1.1 it has too few; at 1.5 it does with 60,000.
+pub(super) const FLAT_PULL: f32 = 1.3;
+/// So many of the nine pixels about a dot are of one tone on flat ground, though an edge passes beside it. With
+/// fewer, photographs have flat ground too, and lose contrast.
+const FLAT: usize = 6;
 
 /// Force on a dot at (x, y) where the spacing is `spacing`, for dots and a picture of width × height pixels:
 ///
@@ -18,6 +26,7 @@ const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PU
 ///   − (R/r)⁴ Σ pixels m   mass(m) (p − m) (1 − |p − m|² / r²)₊³        r = 1 spacing
 /// ```
 ///
+/// where mass(m) is no more than the [`ceiling`] at p,
 /// with dots and pixels mirrored at the borders. Dots lie in runs, one for each row of cells, and pixels
 /// in rows; both are looked at eight at a time:
 ///
@@ -130,6 +139,7 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
     // distances of the lanes' pixels in the first block
     let (mut fx, mut fy) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let from = u - u0 as f32 - 0.5;
+    let ceiling = ceiling(density, u as usize, v as usize);
     for row in v0..=v1 {
         let dy = v - row as f32 - 0.5;
         let start = row * density.stride + u0;
@@ -140,7 +150,8 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
             for lane in 0..LANES {
                 let dx = first - LANE[lane] as f32;
                 let near = positive(near_y - dx * dx * inverse);
-                let weight = near * near * near * masses[lane];
+                let mass = if masses[lane] < ceiling { masses[lane] } else { ceiling };
+                let weight = near * near * near * mass;
                 fx[lane] += dx * weight;
                 fy[lane] += dy * weight;
             }
@@ -148,6 +159,22 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
         }
     }
     [sum(fx) / parts, sum(fy) / parts]
+}
+
+/// The most that a part of a pixel pulls with on a dot at part (u, v): on flat ground [`FLAT_PULL`] of its own.
+#[inline(always)]
+fn ceiling(density: &Density, u: usize, v: usize) -> f32 {
+    // whole pixels, or groups, to the left and right, above and below
+    let side = (density.parts_per_pixel as usize).max(1);
+    let mass = |u: usize, v: usize| density.mass.get(v * density.stride + u);
+    let Some(own) = mass(u, v) else { return f32::INFINITY };
+    let mut alike = 0;
+    for row in [v.saturating_sub(side), v, v + side] {
+        for column in [u.saturating_sub(side), u, u + side] {
+            alike += usize::from(mass(column, row) == Some(own));
+        }
+    }
+    if alike >= FLAT { FLAT_PULL * own } else { f32::INFINITY }
 }
 
 /// The pull where the spacing is less than [`FINEST`] parts of pixels: parts are divided further, into
