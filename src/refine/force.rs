@@ -10,14 +10,13 @@ pub(super) const REACH: f32 = 1.5;
 pub(super) const PULL: f32 = 1.0;
 /// Both forces are gradients of the kernel (1 − u²)⁴ · 5/(π R²), whose weight grows as its reach shrinks.
 const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PULL);
-/// What a darker pixel pulls with, at most, on a dot on flat ground, in the ground's own tone. The pull's sharpening
-/// draws dots across an edge; where the ground is flat right up to it there is nothing to sharpen, and the dots are
-/// missing there. Between tones of 1 : 2, the dark part had 1.2 % too many of 5,000 dots, .9 of 15,000, and has .2.
-/// At 1.1 it has too few; at 1.5 it does with 60,000.
+/// What darker pixels pull with, at most, on a dot on flat ground: so many times the ground's own tone. The pull's
+/// sharpening draws dots across an edge; where the ground is flat right up to it there is nothing to sharpen, and
+/// the dots are missing there. Between tones of 1 : 2 the dark part had .3 to 1.2 % too many, and has .2.
 pub(super) const FLAT_PULL: f32 = 1.3;
-/// So many of the nine pixels about a dot are of one tone on flat ground, though an edge passes beside it. With
-/// fewer, photographs have flat ground too, and lose contrast.
-const FLAT: usize = 6;
+/// So many of the nine pixels about a place are of the lightest or the darkest tone among them on flat ground,
+/// also where a smoothed edge passes. With fewer, photographs have flat ground as well, and lose contrast.
+pub(super) const FLAT: usize = 6;
 
 /// Force on a dot at (x, y) where the spacing is `spacing`, for dots and a picture of width × height pixels:
 ///
@@ -161,20 +160,30 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
     [sum(fx) / parts, sum(fy) / parts]
 }
 
-/// The most that a part of a pixel pulls with on a dot at part (u, v): on flat ground [`FLAT_PULL`] of its own.
+/// The most that a part of a pixel pulls with on a dot at part (u, v): on flat ground [`FLAT_PULL`] times the
+/// ground's tone, which beside an edge is the lighter one, unless the dot is on the darker.
 #[inline(always)]
 fn ceiling(density: &Density, u: usize, v: usize) -> f32 {
     // whole pixels, or groups, to the left and right, above and below
     let side = (density.parts_per_pixel as usize).max(1);
-    let mass = |u: usize, v: usize| density.mass.get(v * density.stride + u);
-    let Some(own) = mass(u, v) else { return f32::INFINITY };
-    let mut alike = 0;
-    for row in [v.saturating_sub(side), v, v + side] {
-        for column in [u.saturating_sub(side), u, u + side] {
-            alike += usize::from(mass(column, row) == Some(own));
+    let mut about = [[0.0_f32; 3]; 3];
+    for (j, row) in about.iter_mut().enumerate() {
+        let start = (v + j * side).saturating_sub(side) * density.stride;
+        for (i, mass) in row.iter_mut().enumerate() {
+            let column = (u + i * side).saturating_sub(side);
+            *mass = density.mass.get(start + column).copied().unwrap_or(0.0);
         }
     }
-    if alike >= FLAT { FLAT_PULL * own } else { f32::INFINITY }
+    let own = about[1][1];
+    let about = about.as_flattened();
+    let lower = |a: f32, b: &f32| if *b < a { *b } else { a };
+    let higher = |a: f32, b: &f32| if *b > a { *b } else { a };
+    let (lightest, darkest) = (about.iter().fold(own, lower), about.iter().fold(own, higher));
+    let alike = about.iter().filter(|mass| **mass == lightest || **mass == darkest).count();
+    if alike < FLAT {
+        return f32::INFINITY;
+    }
+    FLAT_PULL * if own == darkest { own } else { lightest }
 }
 
 /// The pull where the spacing is less than [`FINEST`] parts of pixels: parts are divided further, into

@@ -200,3 +200,23 @@ fn the_best_dots_are_as_many_and_not_the_refined_ones() {
     let complaint = crate::complaint_about("--best", &stipple(&photograph(), &options));
     assert!(complaint.contains("--refine 0"), "{complaint}");
 }
+
+#[test]
+fn exactly_so_many_dots_are_relaxed_unless_told() {
+    let options = |centers: &[&str], refine| {
+        let mut all = vec!["--exact", "1234", "--refine", refine];
+        all.extend_from_slice(centers);
+        csv(&photograph(), &all)
+    };
+    for refine in ["0", "3"] {
+        let relaxed = options(&[], refine);
+        assert_eq!(dots(&relaxed).len(), 1234);
+        assert_eq!(relaxed, options(&["--centers", "relaxed"], refine));
+        let fixed = options(&["--centers", "fixed"], refine);
+        assert_eq!(dots(&fixed).len(), 1234);
+        assert_ne!(fixed, relaxed);
+    }
+    // The fixed ones are progressive.
+    let fewer = csv(&photograph(), &["--exact", "1000", "--refine", "0", "--centers", "fixed"]);
+    assert!(options(&["--centers", "fixed"], "0").starts_with(&fewer));
+}

@@ -233,21 +233,37 @@ fn dots_keep_their_number_and_off_white() {
 
 #[test]
 fn parts_of_one_tone_keep_their_share() {
-    // a dark disc on flat ground, whose edge the pull sharpens
-    let side = 128;
-    for ground in [0.25_f32, 0.5, 0.7] {
-        let dark =
-            |i: usize| (i % side).abs_diff(64).pow(2) + (i / side).abs_diff(64).pow(2) < 1000;
-        let pixels: Vec<f32> =
-            (0..side * side).map(|i| if dark(i) { 1.0 } else { ground }).collect();
-        let discs: f64 = (0..side * side).filter(|i| dark(*i)).count() as f64;
-        let share = discs / (discs + f64::from(ground) * ((side * side) as f64 - discs));
-        let mut points = scattered(2000, side as f64, side as f64);
-        refine(&mut points, side, side, &pixels, 20).unwrap();
-        let inside = |p: &&DVec2| dark(p.y as usize * side + p.x as usize);
-        let found = points.iter().filter(inside).count() as f64 / 2000.0;
-        assert!((found / share - 1.0).abs() < 0.012, "{ground}: {found} {share}");
+    // a dark disc on flat ground, whose edge, hard or smoothed, the pull sharpens
+    let (side, n) = (160, 2500);
+    let mut mean = 0.0;
+    for (ground, soft) in [(0.3, 0.0), (0.3, 1.0), (0.5, 0.0), (0.5, 1.0), (0.7, 1.0)] {
+        let depth = |i: usize| {
+            let from_center = DVec2::new((i % side) as f64, (i / side) as f64) - 79.5;
+            40.2 - from_center.length()
+        };
+        let tone = |i: usize| {
+            let dark = if soft > 0.0 {
+                (depth(i) + 0.5).clamp(0.0, 1.0)
+            } else {
+                f64::from(depth(i) > 0.0)
+            };
+            ground + (1.0 - ground) * dark
+        };
+        let pixels: Vec<f32> = (0..side * side).map(|i| tone(i) as f32).collect();
+        let sum = |inside: bool| -> f64 {
+            (0..side * side).filter(|i| !inside || depth(*i) > 0.0).map(tone).sum()
+        };
+        let share = sum(true) / sum(false);
+        let mut points = scattered(n, side as f64, side as f64);
+        refine(&mut points, side, side, &pixels, 10).unwrap();
+        let inside = |p: &&DVec2| depth(p.y as usize * side + p.x as usize) > 0.0;
+        let found = points.iter().filter(inside).count() as f64 / n as f64;
+        let off = found / share - 1.0;
+        assert!(off.abs() < 0.012, "{ground} {soft}: {off}");
+        mean += off / 5.0;
     }
+    // without a ceiling .011
+    assert!(mean.abs() < 0.004, "{mean}");
 }
 
 #[test]
@@ -304,7 +320,7 @@ fn the_same_dots_everywhere() {
 }
 
 /// Of [`the_same_dots_everywhere`]; it changes when the method does, and with nothing else.
-const GOLDEN: u64 = 0xd918_6f0f_38a2_a1c6;
+const GOLDEN: u64 = 0x2f1c_2c7b_1b19_96b0;
 
 #[cfg(feature = "parallel")]
 #[test]

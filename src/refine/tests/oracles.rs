@@ -32,7 +32,8 @@ fn the_force_is_the_sum_over_all_dots_and_pixels() {
     // noise, and flat ground of two tones beside it
     let tone = |(i, noise): (usize, &DVec2)| match i % width {
         0..12 => 0.4,
-        12..20 => 0.9,
+        12 => 0.6,
+        13..20 => 0.9,
         _ => noise.x as f32,
     };
     let noise = scattered(width * height, 1.0, 1.0);
@@ -54,9 +55,17 @@ fn the_force_is_the_sum_over_all_dots_and_pixels() {
     // what a pixel pulls with, at most, on a dot on this one
     let ceiling = |column: i32, row: i32| {
         let value = |i, j| pixels[mirrored(row + j, height) * width + mirrored(column + i, width)];
-        let about = (-1..=1).flat_map(|j| (-1..=1).map(move |i| value(i, j)));
-        let flat = about.filter(|other| *other == value(0, 0)).count() >= 6;
-        if flat { FLAT_PULL * value(0, 0) } else { f32::INFINITY }
+        let mut about: Vec<f32> =
+            (-1..=1).flat_map(|j| (-1..=1).map(move |i| value(i, j))).collect();
+        about.sort_by(f32::total_cmp);
+        let [lightest, .., darkest] = about[..] else { panic!() };
+        let between = about.iter().filter(|tone| (lightest..darkest).contains(tone));
+        let between = between.filter(|tone| **tone != lightest).count();
+        match value(0, 0) {
+            _ if between > 3 => f32::INFINITY,
+            own if own == darkest => FLAT_PULL * own,
+            _ => FLAT_PULL * lightest,
+        }
     };
     for at in 0..n {
         let (x, y) = (cells.x[at], cells.y[at]);
