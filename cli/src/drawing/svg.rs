@@ -164,7 +164,8 @@ impl<W: Write> Drawing for Svg<'_, W> {
         }
         self.layers += 1;
         let stroke = match self.look.mark {
-            Mark::Disc(width) => disc_stroke(width),
+            // On a page, a stroke is as wide as the pen.
+            Mark::Disc(width) if !self.look.sheet.is_page() => disc_stroke(width),
             ref mark => mark.stroke(),
         };
         writeln!(
@@ -295,7 +296,7 @@ mod tests {
              height=\"75\" viewBox=\"0 0 40 30\">\n<title>t</title>\n<desc>d</desc>\n\
              <rect width=\"40\" height=\"30\" fill=\"white\"/>\n\
              <g inkscape:groupmode=\"layer\" inkscape:label=\"a &quot;b&quot;\" id=\"layer1\" \
-             fill=\"none\" stroke=\"white\" stroke-width=\"3.250\" stroke-linecap=\"round\" \
+             fill=\"none\" stroke=\"white\" stroke-width=\"3.244\" stroke-linecap=\"round\" \
              stroke-linejoin=\"round\">\n<path d=\"M0 30h.01\nm12.34-24h.01\"/>\n</g>\n</svg>\n"
         );
     }
