@@ -85,7 +85,7 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
         };
         let to_xyz = [of(|c| c.x), of(|c| c.y), of(|c| c.z)];
         // Both in the connection space, whose white is D50.
-        let Some(from_xyz) = to_d50(&SRGB).and_then(|matrix| inverse(&matrix)) else {
+        let Some(from_xyz) = of_d50() else {
             return Err("its colors cannot be told apart".to_owned());
         };
         let matrix = product(&from_xyz, &to_xyz);
@@ -103,6 +103,11 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
         )
         .map_err(|error| error.to_string())?;
     Ok(Space { table: Some(table), ..Space::default() })
+}
+
+/// From colors in the connection space, whose white is D50, to linear sRGB.
+pub(super) fn of_d50() -> Option<Matrix> {
+    inverse(&to_d50(&SRGB)?)
 }
 
 fn icc_curve(curve: &ToneReprCurve) -> Result<Curve, String> {
@@ -133,7 +138,7 @@ fn near_identity(matrix: &Matrix) -> bool {
 
 /// From linear colors of these primaries to linear sRGB, white to white.
 fn to_srgb(primaries: &Primaries) -> Option<Matrix> {
-    let matrix = product(&inverse(&to_d50(&SRGB)?)?, &to_d50(primaries)?);
+    let matrix = product(&of_d50()?, &to_d50(primaries)?);
     matrix.iter().flatten().all(|value| value.is_finite() && value.abs() < 100.0).then_some(matrix)
 }
 

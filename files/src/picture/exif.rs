@@ -1,75 +1,25 @@
-//! What Exif data say of a picture: a TIFF directory in memory, of either byte order.
+//! What Exif data say of a picture: a TIFF directory in memory.
+
+use std::io::Cursor;
 
 use image::metadata::Orientation;
 
+use super::directory::{Directory, Form};
+
 const ORIENTATION: u16 = 0x112;
-
-/// A TIFF structure in memory.
-pub(super) struct Directory<'a> {
-    bytes: &'a [u8],
-    big_endian: bool,
-}
-
-impl<'a> Directory<'a> {
-    /// The structure that begins with `bytes`, if one does; a leading `Exif\0\0` is skipped.
-    pub(super) fn new(bytes: &'a [u8]) -> Option<Self> {
-        let bytes = bytes.strip_prefix(b"Exif\0\0").unwrap_or(bytes);
-        let big_endian = match bytes.get(..4)? {
-            b"II*\0" => false,
-            b"MM\0*" => true,
-            _ => return None,
-        };
-        Some(Self { bytes, big_endian })
-    }
-
-    pub(super) fn short(&self, at: usize) -> Option<u16> {
-        let bytes = self.bytes.get(at..at.checked_add(2)?)?.try_into().ok()?;
-        Some(if self.big_endian { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
-    }
-
-    pub(super) fn long(&self, at: usize) -> Option<u32> {
-        let bytes = self.bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
-        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    }
-
-    /// The number in the entry `tag` of the first directory, whatever integer type it has.
-    fn number(&self, tag: u16) -> Option<u32> {
-        const BYTE: u16 = 1;
-        const SHORT: u16 = 3;
-        const LONG: u16 = 4;
-        let start = self.long(4)? as usize;
-        let entries = usize::from(self.short(start)?);
-        let entry = (0..entries)
-            .map(|index| start.saturating_add(2 + 12 * index))
-            .find(|&entry| self.short(entry) == Some(tag))?;
-        // An array lies elsewhere, unless it fits the four bytes; its first element will do.
-        let count = self.long(entry + 4)? as usize;
-        let kind = self.short(entry + 2)?;
-        let size = match kind {
-            BYTE | 6 | 7 => 1,
-            SHORT | 8 => 2,
-            LONG | 9 | 13 => 4,
-            _ => return None,
-        };
-        let place = match count {
-            0 => return None,
-            _ if count.saturating_mul(size) <= 4 => entry + 8,
-            _ => self.long(entry + 8)? as usize,
-        };
-        match size {
-            1 => self.bytes.get(place).map(|&byte| u32::from(byte)),
-            2 => self.short(place).map(u32::from),
-            _ => self.long(place),
-        }
-    }
-}
 
 /// How a picture with these Exif data is to be turned; upright if they do not say.
 pub(super) fn orientation(exif: &[u8]) -> Orientation {
-    Directory::new(exif)
-        .and_then(|directory| directory.number(ORIENTATION))
+    number(exif)
         .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
         .unwrap_or(Orientation::NoTransforms)
+}
+
+fn number(exif: &[u8]) -> Option<u64> {
+    // Some writers keep what JPEG puts before.
+    let mut exif = Cursor::new(exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
+    let (form, first) = Form::read(&mut exif)?;
+    Directory::read(&mut exif, form, first)?.number(&mut exif, ORIENTATION)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ mod aspect;
 mod cases;
 mod cicp;
 mod color;
+mod directory;
 mod exif;
 mod format;
 mod jpeg;
