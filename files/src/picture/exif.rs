@@ -8,18 +8,21 @@ use super::directory::{Directory, Form};
 
 const ORIENTATION: u16 = 0x112;
 
-/// How a picture with these Exif data is to be turned; upright if they do not say.
-pub(super) fn orientation(exif: &[u8]) -> Orientation {
-    number(exif)
-        .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
-        .unwrap_or(Orientation::NoTransforms)
-}
-
-fn number(exif: &[u8]) -> Option<u64> {
+/// How a picture with these Exif data is to be turned; upright if they do not say. Data that are none are a
+/// warning.
+pub(super) fn orientation(exif: &[u8], warnings: &mut Vec<String>) -> Orientation {
     // Some writers keep what JPEG puts before.
     let mut exif = Cursor::new(exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
-    let (form, first) = Form::read(&mut exif)?;
-    Directory::read(&mut exif, form, first)?.number(&mut exif, ORIENTATION)
+    let directory =
+        Form::read(&mut exif).and_then(|(form, first)| Directory::read(&mut exif, form, first));
+    let Some(directory) = directory else {
+        warnings.push("its Exif data are malformed, so that it is taken as upright".to_owned());
+        return Orientation::NoTransforms;
+    };
+    directory
+        .number(&mut exif, ORIENTATION)
+        .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
+        .unwrap_or(Orientation::NoTransforms)
 }
 
 #[cfg(test)]
@@ -47,6 +50,10 @@ mod tests {
         bytes
     }
 
+    fn upright(exif: &[u8]) -> Orientation {
+        orientation(exif, &mut Vec::new())
+    }
+
     #[test]
     fn the_orientation_is_found_in_every_integer_type_and_byte_order() {
         for big_endian in [false, true] {
@@ -54,8 +61,8 @@ mod tests {
                 for value in 1..=8 {
                     let bytes = exif(big_endian, kind, value, 8);
                     let expected = Orientation::from_exif(value as u8).unwrap();
-                    assert_eq!(orientation(&bytes), expected);
-                    assert_eq!(orientation(&[b"Exif\0\0", &bytes[..]].concat()), expected);
+                    assert_eq!(upright(&bytes), expected);
+                    assert_eq!(upright(&[b"Exif\0\0", &bytes[..]].concat()), expected);
                 }
             }
         }
@@ -65,10 +72,13 @@ mod tests {
     fn broken_exif_data_turn_nothing() {
         let whole = exif(true, 3, 6, 8);
         for bytes in [exif(true, 4, 0, 8), exif(false, 4, 99, 8), exif(false, 3, 6, u32::MAX)] {
-            assert_eq!(orientation(&bytes), Orientation::NoTransforms);
+            assert_eq!(upright(&bytes), Orientation::NoTransforms);
         }
+        let mut warnings = Vec::new();
+        orientation(b"not Exif", &mut warnings);
+        assert!(warnings[0].contains("malformed"));
         for end in 0..whole.len() - 8 {
-            assert_eq!(orientation(&whole[..end]), Orientation::NoTransforms);
+            assert_eq!(upright(&whole[..end]), Orientation::NoTransforms);
         }
     }
 }

@@ -202,6 +202,16 @@ impl Error for PictureError {
     }
 }
 
+impl PictureError {
+    /// What a decoder says, without the name of its format.
+    fn reason(&self) -> String {
+        match self {
+            Self::Decode(_, reason) => reason.to_string(),
+            other => other.to_string(),
+        }
+    }
+}
+
 impl From<io::Error> for PictureError {
     fn from(error: io::Error) -> Self {
         Self::Io(error)

@@ -34,24 +34,18 @@ impl Lab {
         let (a, b) = (difference(a), difference(b));
         let lightness = lightness as f64 / (2 * half - 1) as f64 * 100.0;
         let middle = (lightness + 16.0) / 116.0;
-        let luminance = of_root(middle);
+        let luminance = color::of_root(middle);
         if (a, b) == (0.0, 0.0) {
             // White is exactly white.
             return [luminance as f32; 3];
         }
         let xyz = [
-            D50[0] * of_root(middle + a / 500.0),
+            D50[0] * color::of_root(middle + a / 500.0),
             luminance,
-            D50[2] * of_root(middle - b / 200.0),
+            D50[2] * color::of_root(middle - b / 200.0),
         ];
         color::apply(&self.matrix, xyz).map(|value| value.max(0.0) as f32)
     }
-}
-
-/// The inverse of the function by which CIE makes lightness of light.
-pub(crate) fn of_root(root: f64) -> f64 {
-    const BEND: f64 = 6.0 / 29.0;
-    if root > BEND { root * root * root } else { 3.0 * BEND * BEND * (root - 4.0 / 29.0) }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use tiff::tags::Tag;
 use super::super::plane::Plane;
 use super::super::source::Source;
 use super::relabel::Bits;
-use super::{Alpha, Colors, Pixel, PictureError, Sample, failure, limits, unsupported};
+use super::{Alpha, Colors, PictureError, Pixel, Sample, failure, limits, unsupported};
 
 /// Values of the tags `ExtraSamples` and `PlanarConfiguration`.
 const ASSOCIATED_ALPHA: u16 = 1;
@@ -128,7 +128,8 @@ impl Layout {
     }
 }
 
-impl Region {    /// Sets the pixels of this region, each from its `used` samples. `parts` holds them: all interleaved in one
+impl Region {
+    /// Sets the pixels of this region, each from its `used` samples. `parts` holds them: all interleaved in one
     /// part, or each in a part of its own.
     pub(super) fn fill<P: Pixel, S: Sample>(
         &self,

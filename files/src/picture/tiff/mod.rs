@@ -12,7 +12,6 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult, TiffUnsupportedError};
 
-pub(super) use lab::of_root;
 pub(super) use pages::DEVELOP;
 
 use super::color::{self, Space};

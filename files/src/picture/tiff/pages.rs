@@ -59,8 +59,9 @@ pub(super) fn choose(source: &mut Source) -> Result<Option<Directory>, PictureEr
                 return Err(PictureError::Foreign { name, advice: DEVELOP });
             }
             count += 1;
-            let part = page.number(source, NEW_SUBFILE_TYPE).is_some_and(|b| b & (REDUCED | MASK) != 0)
-                || page.number(source, SUBFILE_TYPE) == Some(OLD_REDUCED);
+            let part =
+                page.number(source, NEW_SUBFILE_TYPE).is_some_and(|b| b & (REDUCED | MASK) != 0)
+                    || page.number(source, SUBFILE_TYPE) == Some(OLD_REDUCED);
             let sides = [WIDTH, HEIGHT].map(|tag| page.number(source, tag).unwrap_or(0));
             let area = sides[0].saturating_mul(sides[1]);
             if part {

@@ -161,11 +161,9 @@ fn bits_of(
     };
     let count = colors.count();
     let width = of(WIDTH, 0);
-    let (Ok(width), Ok(chunk), Ok(samples)) = (
-        usize::try_from(width),
-        usize::try_from(of(TILE_WIDTH, width)),
-        usize::try_from(samples),
-    ) else {
+    let (Ok(width), Ok(chunk), Ok(samples)) =
+        (usize::try_from(width), usize::try_from(of(TILE_WIDTH, width)), usize::try_from(samples))
+    else {
         return Err(unsupported("a picture of this size"));
     };
     if width == 0 || chunk == 0 {
