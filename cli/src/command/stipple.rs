@@ -131,9 +131,8 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
 }
 
 fn warn(options: &StippleOptions, warnings: &[String]) {
-    for warning in warnings.iter().filter(|_| !options.quiet) {
-        let warning = of_photo(options, format!("warning: {warning}"));
-        let _ = writeln!(io::stderr(), "twelvefold: {warning}");
+    if !options.quiet {
+        super::warn(&options.photo, warnings);
     }
 }
 
@@ -319,13 +318,8 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, drawn: &Drawn) ->
     remarks
 }
 
-/// A failure about the photograph, by the name that the user knows it by.
 fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
-    if options.photo.as_os_str() == "-" {
-        Failure::about("standard input", reason)
-    } else {
-        Failure::at(&options.photo, reason)
-    }
+    super::of_input(&options.photo, reason)
 }
 
 /// A file that could not be written is an error, unless whoever read it has had enough.

@@ -162,7 +162,7 @@ fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
             () => ("a video or another ISO media", ONE),
         });
     }
-    let signatures: [(&[u8], &str, &str); 41] = [
+    let signatures: [(&[u8], &str, &str); 40] = [
         (b"\xff\x0a", "a JPEG XL", CONVERT),
         (b"\0\0\0\x0cJXL \r\n\x87\n", "a JPEG XL", CONVERT),
         (b"\0\0\0\x0cjP  \r\n\x87\n", "a JPEG 2000", CONVERT),
@@ -195,7 +195,6 @@ fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
         (b"id=ImageMagick", "an ImageMagick (MIFF)", CONVERT),
         (b"AT&TFORM", "a DjVu", CONVERT),
         (b"icns", "an Apple icon", CONVERT),
-        (b"\0\0\x02\0", "a cursor", CONVERT),
         (b"\xd7\xcd\xc6\x9a", "a Windows metafile", RENDER),
         (b"\x1f\x8b", "a gzip", UNPACK),
         (b"PK\x03\x04", "a zip", UNPACK),

@@ -196,8 +196,11 @@ fn decompressed(
             header.layer_size = Vec2(bytes / 2, 1);
             header.layer_size
         }
-        // The library counts the bytes of all pixels alike.
-        _ if bytes.is_multiple_of(width * rows) => {
+        // The library counts the bytes of all pixels alike, and takes whole blocks of B44 only.
+        compression
+            if !matches!(compression, Compression::B44 | Compression::B44A)
+                && bytes.is_multiple_of(width * rows) =>
+        {
             header.channels.bytes_per_pixel = bytes / (width * rows);
             Vec2(width, rows)
         }
