@@ -11,20 +11,20 @@ use super::*;
 
 const LINEAR: Tone = Tone { linear: true, invert: false, levels: None, exposure: None };
 
-fn sample(name: &str) -> PathBuf {
+pub(super) fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
 
-fn picture(name: &str, tone: Tone) -> Picture {
+pub(super) fn picture(name: &str, tone: Tone) -> Picture {
     read(&sample(name), tone).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Mean importance.
-fn darkness(picture: &Picture) -> f64 {
+pub(super) fn darkness(picture: &Picture) -> f64 {
     picture.total() / (picture.width * picture.height) as f64
 }
 
-fn of_bytes<T>(bytes: &[u8], read: impl Fn(&Path) -> T) -> T {
+pub(super) fn of_bytes<T>(bytes: &[u8], read: impl Fn(&Path) -> T) -> T {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), bytes).unwrap();
     read(file.path())

@@ -9,6 +9,8 @@ mod directory;
 mod exif;
 mod format;
 mod jpeg;
+#[cfg(test)]
+mod kinds;
 mod limits;
 mod openexr;
 mod pfm;

@@ -68,6 +68,8 @@ fn read_chunks<P: Pixel>(
 ) -> Result<Decoded<P>, PictureError> {
     let mut options = DecodeOptions::default();
     options.set_ignore_crc(ignore_sums);
+    // Where those of chunks do not count, that of the pixels does.
+    options.set_ignore_adler32(!ignore_sums);
     options.set_ignore_text_chunk(true);
     let mut decoder = png::Decoder::new_with_options(source, options);
     decoder.set_limits(png::Limits { bytes: limits::MEMORY_LIMIT as usize });

@@ -1,0 +1,482 @@
+//! Kinds of files that the usual decoders do not read, or read otherwise: each made here, byte by byte.
+
+use std::fs;
+use std::path::Path;
+
+use super::cases::{darkness, of_bytes, picture, sample};
+use super::*;
+
+const WIDTH: usize = 20;
+const HEIGHT: usize = 12;
+
+/// A number for each pixel, below `top`.
+fn number(x: usize, y: usize, top: usize) -> usize {
+    (x * 7 + y * 3) % top
+}
+
+fn pixels<T>(of: impl Fn(usize, usize) -> T) -> Vec<T> {
+    (0..WIDTH * HEIGHT).map(|i| of(i % WIDTH, i / WIDTH)).collect()
+}
+
+/// How a file writes its numbers.
+#[derive(Clone, Copy)]
+struct Form {
+    big_endian: bool,
+    long: bool,
+}
+
+const FORMS: [Form; 4] = [
+    Form { big_endian: false, long: false },
+    Form { big_endian: true, long: false },
+    Form { big_endian: false, long: true },
+    Form { big_endian: true, long: true },
+];
+
+impl Form {
+    fn put(self, out: &mut Vec<u8>, value: usize, size: usize) {
+        let bytes = (value as u64).to_be_bytes();
+        if self.big_endian {
+            out.extend(&bytes[8 - size..]);
+        } else {
+            out.extend(bytes[8 - size..].iter().rev());
+        }
+    }
+
+    fn word(self) -> usize {
+        if self.long { 8 } else { 4 }
+    }
+
+    /// A file of these directories, in each the entries (tag, bytes of a value, values) and the one strip; those
+    /// of the later ones are within the first.
+    fn file(self, pages: &[(Vec<(usize, usize, Vec<usize>)>, &[u8])]) -> Vec<u8> {
+        let mut out = match (self.big_endian, self.long) {
+            (false, false) => b"II*\0".to_vec(),
+            (true, false) => b"MM\0*".to_vec(),
+            (false, true) => b"II+\0\x08\0\0\0".to_vec(),
+            (true, true) => b"MM\0+\0\x08\0\0".to_vec(),
+        };
+        let first = out.len();
+        self.put(&mut out, 0, self.word());
+        let mut within = Vec::new();
+        for (page, (entries, strip)) in pages.iter().enumerate().rev() {
+            let mut entries = entries.clone();
+            entries.push((273, self.word(), vec![out.len()]));
+            entries.push((279, 4, vec![strip.len()]));
+            if page == 0 && !within.is_empty() {
+                entries.push((330, self.word(), within.clone()));
+            }
+            out.extend(*strip);
+            let mut stored = Vec::new();
+            for (tag, size, values) in &entries {
+                let mut bytes = Vec::new();
+                values.iter().for_each(|&value| self.put(&mut bytes, value, *size));
+                if bytes.len() > self.word() {
+                    let place = out.len();
+                    out.extend(bytes);
+                    bytes = Vec::new();
+                    self.put(&mut bytes, place, self.word());
+                }
+                bytes.resize(self.word(), 0);
+                stored.push((*tag, *size, values.len(), bytes));
+            }
+            stored.sort_by_key(|entry| entry.0);
+            let place = out.len();
+            within.push(place);
+            self.put(&mut out, stored.len(), if self.long { 8 } else { 2 });
+            for (tag, size, count, bytes) in stored {
+                let kind = match size {
+                    1 => 1,
+                    2 => 3,
+                    4 => 4,
+                    _ => 16,
+                };
+                self.put(&mut out, tag, 2);
+                self.put(&mut out, kind, 2);
+                self.put(&mut out, count, self.word());
+                out.extend(bytes);
+            }
+            self.put(&mut out, 0, self.word());
+            if page == 0 {
+                let mut offset = Vec::new();
+                self.put(&mut offset, place, self.word());
+                out[first..first + offset.len()].copy_from_slice(&offset);
+            }
+        }
+        out
+    }
+}
+
+/// Entries of a picture of so many bits and samples.
+fn entries(photometric: usize, bits: usize, samples: usize) -> Vec<(usize, usize, Vec<usize>)> {
+    vec![
+        (256, 2, vec![WIDTH]),
+        (257, 2, vec![HEIGHT]),
+        (258, 2, vec![bits; samples]),
+        (259, 2, vec![1]),
+        (262, 2, vec![photometric]),
+        (277, 2, vec![samples]),
+        (278, 2, vec![HEIGHT]),
+    ]
+}
+
+/// Rows of samples of a few bits each, each row beginning on a byte.
+fn packed(row: usize, bits: usize, numbers: &[usize]) -> Vec<u8> {
+    let mut out = Vec::new();
+    for row in numbers.chunks(row) {
+        let mut text: String = row.iter().map(|number| format!("{number:0bits$b}")).collect();
+        text.extend(std::iter::repeat_n('0', (8 - text.len() % 8) % 8));
+        let byte = |byte: &[u8]| u8::from_str_radix(str::from_utf8(byte).unwrap(), 2).unwrap();
+        out.extend(text.as_bytes().chunks(8).map(byte));
+    }
+    out
+}
+
+fn importance(bytes: &[u8]) -> Vec<f32> {
+    let found = of_bytes(bytes, |path| read(path, Tone::default())).unwrap();
+    assert_eq!((found.width, found.height, found.warnings.len()), (WIDTH, HEIGHT, 0));
+    found.importance
+}
+
+fn assert_near(found: &[f32], expected: &[f32], tolerance: f32) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() <= tolerance, "{found} {expected}");
+    }
+}
+
+fn dark([red, green, blue]: [usize; 3]) -> f32 {
+    let [red, green, blue] = [red, green, blue].map(|value| value as f32 / 65535.0);
+    1.0 - (0.2126 * red + 0.7152 * green + 0.0722 * blue)
+}
+
+#[test]
+fn palettes_of_tiff_files_are_their_colors() {
+    for form in FORMS {
+        for bits in [1usize, 2, 4, 8, 16] {
+            let count = 1 << bits;
+            let color =
+                |index: usize| [index * 65535 / (count - 1), index * 7919 % 65536, 65535 - index];
+            let map: Vec<usize> =
+                (0..3).flat_map(|part| (0..count).map(move |i| color(i)[part])).collect();
+            let numbers = pixels(|x, y| number(x, y, count.min(400)));
+            let mut strip = Vec::new();
+            if bits == 16 {
+                numbers.iter().for_each(|&number| form.put(&mut strip, number, 2));
+            } else {
+                strip = packed(WIDTH, bits, &numbers);
+            }
+            let mut page = entries(3, bits, 1);
+            page.push((320, 2, map));
+            let expected: Vec<f32> = numbers.iter().map(|&number| dark(color(number))).collect();
+            assert_near(&importance(&form.file(&[(page, &strip)])), &expected, 1e-5);
+        }
+    }
+}
+
+#[test]
+fn a_palette_of_eight_bits_is_stretched() {
+    let numbers = pixels(|x, y| number(x, y, 16));
+    let mut page = entries(3, 4, 1);
+    page.push((320, 2, (0..48).map(|i| i % 16 * 17).collect()));
+    let strip = packed(WIDTH, 4, &numbers);
+    let expected: Vec<f32> = numbers.iter().map(|&n| 1.0 - n as f32 / 15.0).collect();
+    assert_near(&importance(&FORMS[0].file(&[(page, &strip)])), &expected, 1e-5);
+}
+
+#[test]
+fn samples_of_any_number_of_bits_are_read_with_either_end_as_white() {
+    for form in FORMS {
+        for (photometric, bits, samples) in [
+            (1usize, 12usize, 1usize),
+            (0, 12, 1),
+            (1, 10, 1),
+            (1, 24, 1),
+            (0, 6, 1),
+            (2, 12, 3),
+            (2, 4, 3),
+            (2, 5, 4),
+            (5, 2, 4),
+        ] {
+            let top = (1usize << bits) - 1;
+            let numbers: Vec<usize> = pixels(|x, y| number(x, y, 57) * top / 56)
+                .into_iter()
+                .flat_map(|n| (0..samples).map(move |i| if i == 3 { 0 } else { n }))
+                .collect();
+            let strip = packed(WIDTH * samples, bits, &numbers);
+            let expected: Vec<f32> = numbers
+                .chunks(samples)
+                .map(|pixel| {
+                    let part = pixel[0] as f32 / top as f32;
+                    if matches!(photometric, 0 | 5) { part } else { 1.0 - part }
+                })
+                .collect();
+            let file = form.file(&[(entries(photometric, bits, samples), &strip)]);
+            assert_near(&importance(&file), &expected, 2e-5);
+        }
+    }
+}
+
+#[test]
+fn bytes_that_begin_with_their_last_bit_are_turned() {
+    for bits in [1usize, 8] {
+        let top = (1usize << bits) - 1;
+        let numbers = pixels(|x, y| number(x, y, top + 1));
+        let strip: Vec<u8> =
+            packed(WIDTH, bits, &numbers).iter().map(|byte| byte.reverse_bits()).collect();
+        let mut page = entries(1, bits, 1);
+        page.push((266, 2, vec![2]));
+        let expected: Vec<f32> = numbers.iter().map(|&n| 1.0 - n as f32 / top as f32).collect();
+        assert_near(&importance(&FORMS[1].file(&[(page, &strip)])), &expected, 1e-5);
+    }
+}
+
+#[test]
+fn lightness_of_lab_is_the_tone_and_its_hue_the_color() {
+    for form in FORMS {
+        for (photometric, zero) in [(8usize, 0usize), (9, 128)] {
+            for size in [1usize, 2] {
+                let unit = if size == 1 { 1 } else { 256 };
+                let mut strip = Vec::new();
+                for lightness in pixels(|x, y| number(x, y, 256)) {
+                    form.put(&mut strip, lightness * if size == 1 { 1 } else { 257 }, size);
+                    form.put(&mut strip, zero * unit, size);
+                    form.put(&mut strip, zero * unit, size);
+                }
+                let expected: Vec<f32> = pixels(|x, y| {
+                    let root = (number(x, y, 256) as f64 / 2.55 + 16.0) / 116.0;
+                    1.0 - srgb::encode(color::of_root(root)) as f32
+                });
+                let file = form.file(&[(entries(photometric, 8 * size, 3), &strip)]);
+                assert_near(&importance(&file), &expected, 1e-5);
+            }
+        }
+    }
+    // sRGB's red.
+    let strip = [138u8, 81, 70].repeat(WIDTH * HEIGHT);
+    let file = FORMS[0].file(&[(entries(8, 8, 3), &strip)]);
+    let found = of_bytes(&file, |path| read_color(path, Tone::default(), None)).unwrap();
+    let [red, green, blue, alpha] = found.pixels[0];
+    assert!(red > 0.97 && green < 0.01 && blue < 0.01 && alpha == 1.0, "{:?}", found.pixels[0]);
+}
+
+#[test]
+fn a_larger_picture_within_a_thumbnail_is_shown() {
+    let strip = pixels(|x, y| number(x, y, 256) as u8);
+    let mut thumbnail = entries(1, 8, 1);
+    thumbnail.retain(|entry| !matches!(entry.0, 256 | 257));
+    thumbnail.extend([(254, 4, vec![1]), (256, 2, vec![2]), (257, 2, vec![2])]);
+    for form in FORMS {
+        let file = form.file(&[(thumbnail.clone(), &[9; 4]), (entries(1, 8, 1), &strip)]);
+        let expected: Vec<f32> = strip.iter().map(|&n| 1.0 - f32::from(n) / 255.0).collect();
+        assert_near(&importance(&file), &expected, 1e-5);
+    }
+}
+
+#[test]
+fn files_of_cameras_are_named_and_their_thumbnails_not_drawn() {
+    let make = |name: &str| (271, 1, name.bytes().map(usize::from).collect::<Vec<_>>());
+    let mut thumbnail = entries(1, 8, 1);
+    thumbnail.push((254, 4, vec![1]));
+    for (name, photometric, compression, expected) in [
+        ("NIKON CORPORATION\0", 32803, 34713, "NEF"),
+        ("SONY\0", 32803, 32767, "ARW"),
+        ("PENTAX\0", 1, 65535, "PEF"),
+        ("SAMSUNG\0", 32803, 1, "SRW"),
+        ("Leaf\0", 32803, 1, "camera's raw"),
+    ] {
+        let mut raw = entries(photometric, 12, 1);
+        raw.retain(|entry| entry.0 != 259);
+        raw.extend([(259, 2, vec![compression]), make(name)]);
+        for form in FORMS {
+            let file = form.file(&[(thumbnail.clone(), &[9; WIDTH * HEIGHT]), (raw.clone(), &[0])]);
+            let error = of_bytes(&file, |path| read(path, Tone::default())).unwrap_err();
+            let text = error.to_string();
+            assert!(text.contains(expected) && text.contains("develop it"), "{text}");
+        }
+    }
+    let mut canon = FORMS[0].file(&[(thumbnail.clone(), &[9; WIDTH * HEIGHT])]);
+    canon[8..10].copy_from_slice(b"CR");
+    let error = of_bytes(&canon, |path| read(path, Tone::default())).unwrap_err();
+    assert!(error.to_string().contains("CR2"), "{error}");
+    let mut dng = thumbnail;
+    dng.push((50706, 1, vec![1, 4, 0, 0]));
+    let dng = FORMS[1].file(&[(dng, &[9; WIDTH * HEIGHT])]);
+    let error = of_bytes(&dng, |path| read(path, Tone::default())).unwrap_err();
+    assert!(error.to_string().contains("DNG"), "{error}");
+}
+
+#[test]
+fn luminance_of_an_openexr_file_is_its_tone_and_color_differences_its_color() {
+    let orange = [0.8, 0.3, 0.1];
+    let luminance = 0.2126 * orange[0] + 0.7152 * orange[1] + 0.0722 * orange[2];
+    for name in ["yc_none.exr", "yc_zip.exr", "yc_piz.exr"] {
+        let found = picture(name, Tone::default());
+        assert_eq!((found.width, found.height), (16, 10));
+        let color = read_color(&sample(name), Tone::default(), None).unwrap();
+        let radiance = read_radiance(&sample(name)).unwrap();
+        for (i, &value) in found.importance.iter().enumerate() {
+            let (left, edge) = (i % 16 < 8, i % 16 == 7);
+            let tone = 1.0 - srgb::encode(if left { 0.5 } else { luminance }) as f32;
+            assert!((value - tone).abs() < 1e-3, "{name} {i}: {value} {tone}");
+            let expected = if left { [0.5; 3] } else { orange };
+            // Between two samples of hue lies a mixture.
+            let near = |k: usize| (f64::from(color.pixels[i][k]) - expected[k]).abs() < 2e-3;
+            assert!(edge || (0..3).all(near), "{name} {i}: {:?}", color.pixels[i]);
+        }
+        for (light, color) in radiance.pixels.iter().zip(&color.pixels) {
+            assert!((0..3).all(|k| (light[k] - color[k]).abs() < 1e-6), "{light:?} {color:?}");
+        }
+    }
+}
+
+#[test]
+fn inks_of_jpeg_files_follow_their_profile_and_without_one_mix_ideally() {
+    let lightness = [100.0, 60.0, 50.0, 90.0, 20.0];
+    for name in ["inks.jpg", "inks_ycck.jpg"] {
+        let found = picture(name, Tone::default());
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        for (patch, lightness) in lightness.iter().enumerate() {
+            let expected = 1.0 - srgb::encode(color::of_root((lightness + 16.0) / 116.0));
+            let value = f64::from(found.importance[8 * found.width + 8 * patch + 4]);
+            assert!((value - expected).abs() < 0.02, "{name} {patch}: {value} {expected}");
+        }
+        let bytes = fs::read(sample(name)).unwrap();
+        let start = bytes.windows(4).position(|w| w == b"ICC_").unwrap() - 4;
+        let length = usize::from(u16::from_be_bytes([bytes[start + 2], bytes[start + 3]]));
+        let bare = [&bytes[..start], &bytes[start + 2 + length..]].concat();
+        let found = of_bytes(&bare, |path| read(path, Tone::default())).unwrap();
+        for (patch, expected) in [0.0, 0.2126, 0.7152, 0.0722, 1.0].iter().enumerate() {
+            let value = found.importance[8 * found.width + 8 * patch + 4];
+            assert!((value - expected).abs() < 0.02, "{name} {patch}: {value} {expected}");
+        }
+        // Part one of two alone.
+        let mut part = bytes;
+        part[start + 17] = 2;
+        let found = of_bytes(&part, |path| read(path, Tone::default())).unwrap();
+        assert!(found.warnings[0].contains("missing"), "{:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_progressive_jpeg_is_whole_when_its_last_pass_is() {
+    let whole = fs::read(sample("progressive.jpg")).unwrap();
+    let expected = picture("progressive.jpg", Tone::default());
+    let end = whole.len() - 2;
+    let found = of_bytes(&whole[..end], |path| read(path, Tone::default())).unwrap();
+    assert!(found.warnings[0].contains("no end marker"));
+    assert_eq!(found.importance, expected.importance);
+    for end in (0..end - 1).step_by(3) {
+        assert!(of_bytes(&whole[..end], |path| read(path, Tone::default())).is_err(), "{end}");
+    }
+}
+
+/// A PNG file with these chunks before its pixels.
+fn png_with(chunks: &[(&[u8; 4], &[u8])], sum: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, WIDTH as u32, HEIGHT as u32);
+    encoder.set_color(::png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    let data: Vec<u8> =
+        pixels(|x, y| number(x, y, 200) as u8).iter().flat_map(|&n| [n, n, n]).collect();
+    writer.write_image_data(&data).unwrap();
+    drop(writer);
+    let (start, rest) = bytes.split_at(33);
+    let mut file = start.to_vec();
+    for (name, data) in chunks {
+        let mut hasher = crc32fast::Hasher::new();
+        hasher.update(&name[..]);
+        hasher.update(data);
+        file.extend((data.len() as u32).to_be_bytes());
+        file.extend(&name[..]);
+        file.extend(*data);
+        file.extend((hasher.finalize() ^ sum).to_be_bytes());
+    }
+    [&file, rest].concat()
+}
+
+#[test]
+fn malformed_chunks_of_png_files_are_passed_over_with_a_word() {
+    let plain = of_bytes(&png_with(&[], 0), |path| read(path, Tone::default())).unwrap();
+    assert!(plain.warnings.is_empty());
+    let cases: [(&[u8; 4], &[u8]); 18] = [
+        (b"iCCP", b"name\0\0not deflated"),
+        (b"iCCP", b""),
+        (b"iCCP", b"no end of the name"),
+        (b"eXIf", b""),
+        (b"eXIf", b"not a directory"),
+        (b"gAMA", b"\0\0"),
+        (b"gAMA", b"\0\0\0\0"),
+        (b"cHRM", b"\0\0\0"),
+        (b"cHRM", &[0; 32]),
+        (b"pHYs", b"\0"),
+        (b"sRGB", b""),
+        (b"sRGB", b"\x09"),
+        (b"cICP", b"\x01"),
+        (b"cICP", b"\xff\xff\xff\xff"),
+        (b"cICP", b"\x63\x63\0\x01"),
+        (b"acTL", b"\0"),
+        (b"tRNS", b"\0"),
+        (b"fcTL", b"\0"),
+    ];
+    for (name, data) in cases {
+        let shown = String::from_utf8_lossy(name);
+        let found = of_bytes(&png_with(&[(name, data)], 0), |path| read(path, Tone::default()));
+        let found = found.unwrap_or_else(|error| panic!("{shown}: {error}"));
+        assert_eq!(found.importance, plain.importance, "{shown}");
+        // What tells nothing of the still picture may be passed over in silence.
+        let silent = matches!(name, b"acTL" | b"fcTL" | b"tRNS");
+        assert!(silent || !found.warnings.is_empty(), "{shown} {data:?}");
+        let found = of_bytes(&png_with(&[(name, data)], 1), |path| read(path, Tone::default()));
+        let found = found.unwrap();
+        assert_eq!(found.importance, plain.importance, "{shown}");
+        assert!(found.warnings.iter().any(|w| w.contains(&*shown)), "{:?}", found.warnings);
+    }
+    // A wrong checksum of pixels that are right.
+    let mut bytes = png_with(&[], 0);
+    let end = bytes.len() - 12;
+    bytes[end - 1] ^= 1;
+    let found = of_bytes(&bytes, |path| read(path, Tone::default())).unwrap();
+    assert_eq!(found.importance, plain.importance);
+    assert!(found.warnings[0].contains("damaged"), "{:?}", found.warnings);
+    // Pixels that are not.
+    bytes[end - 10] ^= 1;
+    assert!(of_bytes(&bytes, |path| read(path, Tone::default())).is_err());
+}
+
+#[test]
+fn no_cut_or_flipped_file_of_these_kinds_crashes() {
+    let strip = packed(WIDTH, 4, &pixels(|x, y| number(x, y, 16)));
+    let mut palette = entries(3, 4, 1);
+    palette.push((320, 2, (0..48).map(|i| i * 1000).collect()));
+    let mut files = vec![
+        FORMS[0].file(&[(palette, &strip)]),
+        FORMS[3].file(&[(entries(8, 8, 3), &[99; 3 * WIDTH * HEIGHT])]),
+        FORMS[1].file(&[(entries(2, 12, 3), &[99; 54 * 20])]),
+    ];
+    for name in ["yc_none.exr", "yc_zip.exr", "yc_piz.exr", "inks_ycck.jpg", "progressive.jpg"] {
+        files.push(fs::read(sample(name)).unwrap());
+    }
+    let mut state = 7u32;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % below
+    };
+    let mut drawn = 0;
+    for whole in files {
+        let tried = |bytes: &[u8]| of_bytes(bytes, |path: &Path| read(path, Tone::default()));
+        assert!(tried(&whole).is_ok());
+        for part in 0..20 {
+            let _ = tried(&whole[..whole.len() * part / 20]);
+        }
+        for _ in 0..60 {
+            let mut bytes = whole.clone();
+            for _ in 0..=random(3) {
+                let place = random(bytes.len());
+                bytes[place] = [0, 0xff, 0x7f, 0x80, random(256) as u8][random(5)];
+            }
+            drawn += usize::from(tried(&bytes).is_ok());
+        }
+    }
+    assert!(drawn > 40, "{drawn}");
+    assert!(darkness(&picture("progressive.jpg", Tone::default())) > 0.2);
+}
