@@ -18,6 +18,9 @@ fn pixels<T>(of: impl Fn(usize, usize) -> T) -> Vec<T> {
     (0..WIDTH * HEIGHT).map(|i| of(i % WIDTH, i / WIDTH)).collect()
 }
 
+/// An entry of a directory: its tag, the bytes of a value, and its values.
+type Entry = (usize, usize, Vec<usize>);
+
 /// How a file writes its numbers.
 #[derive(Clone, Copy)]
 struct Form {
@@ -46,9 +49,8 @@ impl Form {
         if self.long { 8 } else { 4 }
     }
 
-    /// A file of these directories, in each the entries (tag, bytes of a value, values) and the one strip; those
-    /// of the later ones are within the first.
-    fn file(self, pages: &[(Vec<(usize, usize, Vec<usize>)>, &[u8])]) -> Vec<u8> {
+    /// A file of these directories, each with its entries and its one strip; the later ones are within the first.
+    fn file(self, pages: &[(Vec<Entry>, &[u8])]) -> Vec<u8> {
         let mut out = match (self.big_endian, self.long) {
             (false, false) => b"II*\0".to_vec(),
             (true, false) => b"MM\0*".to_vec(),
@@ -107,7 +109,7 @@ impl Form {
 }
 
 /// Entries of a picture of so many bits and samples.
-fn entries(photometric: usize, bits: usize, samples: usize) -> Vec<(usize, usize, Vec<usize>)> {
+fn entries(photometric: usize, bits: usize, samples: usize) -> Vec<Entry> {
     vec![
         (256, 2, vec![WIDTH]),
         (257, 2, vec![HEIGHT]),
@@ -431,15 +433,10 @@ fn malformed_chunks_of_png_files_are_passed_over_with_a_word() {
         assert_eq!(found.importance, plain.importance, "{shown}");
         assert!(found.warnings.iter().any(|w| w.contains(&*shown)), "{:?}", found.warnings);
     }
-    // A wrong checksum of pixels that are right.
+    // Pixels that their checksum disowns are not shown.
     let mut bytes = png_with(&[], 0);
     let end = bytes.len() - 12;
     bytes[end - 1] ^= 1;
-    let found = of_bytes(&bytes, |path| read(path, Tone::default())).unwrap();
-    assert_eq!(found.importance, plain.importance);
-    assert!(found.warnings[0].contains("damaged"), "{:?}", found.warnings);
-    // Pixels that are not.
-    bytes[end - 10] ^= 1;
     assert!(of_bytes(&bytes, |path| read(path, Tone::default())).is_err());
 }
 

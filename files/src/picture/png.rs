@@ -3,7 +3,7 @@
 use std::io::{Cursor, Read as _, Seek as _, SeekFrom};
 
 use image::metadata::Orientation;
-use png::{BitDepth, ColorType, DecodeOptions, DecodingError, Info, Transformations};
+use png::{BitDepth, ColorType, DecodingError, Info, Transformations};
 
 use super::color::{self, Space};
 use super::plane::{Decoded, Plane};
@@ -33,21 +33,21 @@ pub(super) fn read<P: Pixel>(
         source = Source::Memory(Cursor::new(bytes));
     }
     source.rewind()?;
-    let first = match read_chunks(&mut source, &chunks, false, wanted) {
+    let first = match read_chunks(&mut source, &chunks, wanted) {
         Err(error) if !chunks.ended && matches!(error, PictureError::Decode(..)) => {
             return Err(PictureError::Truncated(Format::Png));
         }
         Err(error @ (PictureError::Decode(..) | PictureError::Io(_))) => error,
         result => return result,
     };
-    // What is wrong may be a chunk that is not needed, or no more than a checksum of one that is.
+    // What is wrong may be a chunk that is not needed.
     let bytes = source.into_bytes()?;
     chunks.seen.clear();
     for transparency in [true, false] {
         let needed =
             |name: &[u8; 4]| name[0].is_ascii_uppercase() || transparency && name == b"tRNS";
         let mut source = Source::Memory(Cursor::new(only(&bytes, needed)));
-        if let Ok(mut picture) = read_chunks(&mut source, &chunks, true, wanted) {
+        if let Ok(mut picture) = read_chunks(&mut source, &chunks, wanted) {
             let what = if transparency { "" } else { ", transparency among them" };
             picture.warnings.push(format!(
                 "it is read without the chunks that are not needed{what}, for it is damaged ({})",
@@ -59,20 +59,15 @@ pub(super) fn read<P: Pixel>(
     Err(first)
 }
 
-/// Reads a file that has been looked at, checksums of chunks aside if they are not to count.
+/// Reads a file that has been looked at.
 fn read_chunks<P: Pixel>(
     source: &mut Source,
     chunks: &Chunks,
-    ignore_sums: bool,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
-    let mut options = DecodeOptions::default();
-    options.set_ignore_crc(ignore_sums);
-    // Where those of chunks do not count, that of the pixels does.
-    options.set_ignore_adler32(!ignore_sums);
-    options.set_ignore_text_chunk(true);
-    let mut decoder = png::Decoder::new_with_options(source, options);
-    decoder.set_limits(png::Limits { bytes: limits::MEMORY_LIMIT as usize });
+    let mut decoder =
+        png::Decoder::new_with_limits(source, png::Limits { bytes: limits::MEMORY_LIMIT as usize });
+    decoder.set_ignore_text_chunk(true);
     // As for one with tRNS and PLTE chunks: samples of 8 or 16 bits that say what they are.
     decoder.set_transformations(Transformations::EXPAND);
     // The decoder begins with buffers for a row, and says of a row too long only that it is.
