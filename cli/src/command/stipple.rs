@@ -28,6 +28,10 @@ use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let (format, mut output) = open(options)?;
+    if let Some(option) = idle(options, format) {
+        let format = format!("{format:?}").to_uppercase();
+        return Err(Failure::about(option, format!("has no effect on {format}; leave it out")));
+    }
     let (picture, inks) = match &options.paper.pens {
         None => {
             let mut picture = read(options)?;
@@ -81,6 +85,21 @@ fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
     let output =
         Output::create_from(path, &options.photo).map_err(|error| of_output(path, error))?;
     Ok((format, output))
+}
+
+/// An option that was given and that changes nothing in files of this format.
+fn idle(options: &StippleOptions, format: Format) -> Option<&'static str> {
+    let paper = &options.paper;
+    // Dots of pens lie apart by their size, and have colors by that of the paper.
+    let by_size = paper.pen.is_some() || paper.pens.is_some();
+    [
+        ("--dpi", paper.dpi.is_some() && format != Format::Png),
+        ("--scale", options.scale.is_some() && format.is_list()),
+        ("--paper", paper.paper.is_some() && paper.pens.is_none() && format.is_list()),
+        ("--dot-size", options.dot_size.is_some() && !by_size && format.is_list()),
+    ]
+    .into_iter()
+    .find_map(|(option, idle)| idle.then_some(option))
 }
 
 /// Reads the photograph, which must not be blank if dots are to be drawn.
