@@ -34,7 +34,7 @@ pub(super) fn read<P: Pixel>(
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
     source.rewind()?;
-    let meta = MetaData::read_from_buffered(&mut source, false).map_err(failure)?;
+    let meta = MetaData::read_from_buffered(&mut source, true).map_err(failure)?;
     let layer = Layer::choose(&meta.headers, wanted.layer)?;
     if wanted.radiance && layer.header.own_attributes.environment_map == Some(EnvironmentMap::Cube)
     {

@@ -26,7 +26,9 @@ pub(super) fn read<P: Pixel>(
     let tables = source.stream_position()?;
     let header = layer.header;
     if header.deep || header.blocks != BlockDescription::ScanLines {
-        return Err(unsupported("channels with fewer samples than pixels in tiles"));
+        return Err(unsupported(
+            "channels with fewer samples than pixels are not supported in tiles",
+        ));
     }
     let chroma = layer.chroma.filter(|_| P::COLORED);
     let colors = if chroma.is_some() { Colors::Rgb } else { layer.colors };
@@ -36,7 +38,7 @@ pub(super) fn read<P: Pixel>(
     let before: usize = meta.headers[..layer.index].iter().map(|header| header.chunk_count).sum();
     source.seek(SeekFrom::Start(tables.saturating_add(8 * before as u64)))?;
     if header.chunk_count > header.layer_size.1 {
-        return Err(unsupported("more blocks than rows"));
+        return Err(unsupported("it has more blocks than rows"));
     }
     let mut offsets = Vec::with_capacity(header.chunk_count);
     for _ in 0..header.chunk_count {
@@ -51,7 +53,7 @@ pub(super) fn read<P: Pixel>(
         let top = usize::try_from(i64::from(y) - i64::from(corner)).unwrap_or(usize::MAX);
         let rows = header.compression.scan_lines_per_block();
         if u64::from(length) > limits::MEMORY_LIMIT || top >= header.layer_size.1 {
-            return Err(unsupported("blocks outside of the picture"));
+            return Err(unsupported("it has blocks outside of the picture"));
         }
         let rows = rows.min(header.layer_size.1 - top);
         let mut pressed = Vec::new();
@@ -118,7 +120,7 @@ fn planes(layer: &Layer<'_>, chroma: Option<[usize; 2]>) -> Result<Vec<Plane>, P
     let plane = |(channel, slot): (usize, usize)| {
         let sampling = layer.header.channels.list[channel].sampling;
         if sampling.0 == 0 || sampling.1 == 0 {
-            return Err(unsupported("a channel without samples"));
+            return Err(unsupported("it has a channel without samples"));
         }
         let (width, height) = (width.div_ceil(sampling.0), height.div_ceil(sampling.1));
         let mut values = Vec::new();
@@ -205,7 +207,9 @@ fn decompressed(
             Vec2(width, rows)
         }
         other => {
-            let reason = format!("{other} of channels with fewer samples than pixels");
+            let reason = format!(
+                "{other} is not supported for channels with fewer samples than pixels; save it with ZIP"
+            );
             return Err(unsupported(&reason));
         }
     };
@@ -214,7 +218,7 @@ fn decompressed(
     let block = compression
         .decompress_image_section_from_le(&header, pressed, section, false)
         .map_err(failure)?;
-    if block.len() < bytes { Err(unsupported("blocks of another size")) } else { Ok(block) }
+    if block.len() < bytes { Err(unsupported("it has blocks of another size")) } else { Ok(block) }
 }
 
 fn bytes<const N: usize>(source: &mut Source) -> Result<[u8; N], PictureError> {
