@@ -5,9 +5,12 @@ mod aspect;
 mod cases;
 mod cicp;
 mod color;
+mod directory;
 mod exif;
 mod format;
 mod jpeg;
+#[cfg(test)]
+mod kinds;
 mod limits;
 mod openexr;
 mod pfm;
@@ -197,6 +200,16 @@ impl Error for PictureError {
             Self::Io(error) => Some(error),
             Self::Decode(_, reason) => Some(reason.as_ref()),
             _ => None,
+        }
+    }
+}
+
+impl PictureError {
+    /// What a decoder says, without the name of its format.
+    fn reason(&self) -> String {
+        match self {
+            Self::Decode(_, reason) => reason.to_string(),
+            other => other.to_string(),
         }
     }
 }
