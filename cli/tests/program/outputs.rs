@@ -155,7 +155,12 @@ fn dot_size_is_a_diameter_in_pixels_of_the_photograph() {
         let tolerance = if size > 10.0 { 0.4 } else { 0.03 };
         assert!((ink / wanted - 1.0).abs() < tolerance, "{size} x {scale}: {ink} for {wanted}");
         let svg = String::from_utf8(file(&photograph(), "a.svg", &options)).unwrap();
-        assert!(svg.contains(&format!(" stroke-width=\"{size}")));
+        let width = svg.split("stroke-width=\"").nth(1).and_then(|rest| rest.split('"').next());
+        let width: f64 = width.unwrap().parse().unwrap();
+        // A stroke with round caps, a hundredth long, of the disc's area.
+        let area = std::f64::consts::PI / 4.0 * width * width + 0.01 * width;
+        let disc = std::f64::consts::PI / 4.0 * size * size;
+        assert!((area / disc - 1.0).abs() < 0.002, "{size}: {width}");
     }
 }
 
