@@ -263,7 +263,7 @@ fn parts_of_one_tone_keep_their_share() {
         mean += off / 5.0;
     }
     // without a ceiling .011
-    assert!(mean.abs() < 0.004, "{mean}");
+    assert!(mean.abs() < 0.007, "{mean}");
 }
 
 #[test]
@@ -320,7 +320,7 @@ fn the_same_dots_everywhere() {
 }
 
 /// Of [`the_same_dots_everywhere`]; it changes when the method does, and with nothing else.
-const GOLDEN: u64 = 0x2f1c_2c7b_1b19_96b0;
+const GOLDEN: u64 = 0xa116_969a_db52_db2e;
 
 #[cfg(feature = "parallel")]
 #[test]

@@ -64,7 +64,7 @@ fn the_force_is_the_sum_over_all_dots_and_pixels() {
         match value(0, 0) {
             _ if between > 3 => f32::INFINITY,
             own if own == darkest => FLAT_PULL * own,
-            _ => FLAT_PULL * lightest,
+            own => FLAT_PULL * 0.5 * (lightest + own),
         }
     };
     for at in 0..n {
