@@ -330,8 +330,8 @@ pub(crate) struct StippleOptions {
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]
     pub(crate) points: Option<u64>,
 
-    /// Exactly N dots, at most 10,000,000. With `--refine 0` they are in an order of which each beginning is
-    /// itself a good stippling.
+    /// Exactly N dots, at most 10,000,000. With `--refine 0 --centers fixed` they are in an order of which each
+    /// beginning is itself the stippling with so many dots.
     #[arg(
         long,
         value_name = "N",
@@ -370,9 +370,8 @@ pub(crate) struct StippleOptions {
     /// `fixed`, at the centers of tiles, where rows and clumps show, but where more dots only ever add
     /// to fewer.
     ///
-    /// [default: relaxed; `--exact` begins with fixed ones]
-    #[arg(long, value_enum, value_name = "HOW", conflicts_with = "exact")]
-    pub(crate) centers: Option<Centers>,
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Centers::Relaxed)]
+    pub(crate) centers: Centers,
 
     /// Whether dots allow for the ink that is lost where they overlap: `correct` puts more of them where it
     /// is dark, so that ink covers as much as the photograph asks for; `ignore` puts as many as it asks.

@@ -36,6 +36,12 @@ pub(crate) enum Command {
     ///
     /// The columns are those of evenness, of dots on even ground.
     Classes(ClassesOptions),
+    /// Measure how well dots draw photographs, and in what time: ours, weighted and linked Voronoi stippling,
+    /// error diffusion, and dots of other programs in files.
+    ///
+    /// Means over the photographs: tone error after a blur of 1, 2 and 4 spacings; PSNR and structural similarity;
+    /// first percentile and mean of nearest distances (hexagonal = 1).
+    Stipplers(StipplersOptions),
 }
 
 /// Options of `twelvefold-lab report`.
@@ -96,6 +102,23 @@ pub(crate) struct ClassesOptions {
     /// Iterations with both energies.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(..=1000))]
     pub(crate) iterations: u16,
+}
+
+/// Options of `twelvefold-lab stipplers`.
+#[derive(Debug, Args)]
+pub(crate) struct StipplersOptions {
+    /// The photographs.
+    #[arg(required = true, value_name = "PHOTO")]
+    pub(crate) photos: Vec<PathBuf>,
+
+    /// Dots, about.
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 15_000, value_parser = clap::value_parser!(u32).range(100..=1 << 20))]
+    pub(crate) points: u32,
+
+    /// Dots of another program, in pixels of the photograph: a list for each photograph, in their order. Named
+    /// after the first list.
+    #[arg(long = "list", value_name = "FILE")]
+    pub(crate) lists: Vec<PathBuf>,
 }
 
 /// Options of `twelvefold-lab train`.

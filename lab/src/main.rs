@@ -12,7 +12,7 @@ use clap::Parser as _;
 use twelvefold_files::failure::Failure;
 
 use crate::args::{Arguments, Command};
-use crate::command::{classes, evenness, figures, report, speed, train};
+use crate::command::{classes, evenness, figures, report, speed, stipplers, train};
 
 fn main() -> ExitCode {
     match process(&Arguments::parse()) {
@@ -31,6 +31,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
         Command::Report(options) => report::run(options),
         Command::Figures(options) => figures::run(options),
         Command::Speed(options) => speed::run(options),
+        Command::Stipplers(options) => stipplers::run(options),
         Command::Classes(options) => classes::run(options),
         Command::Evenness(options) => evenness::run(options),
     }

@@ -23,6 +23,7 @@
 //! |---|---|---|
 //! | [`Sampling::weighted`](crate::Sampling::weighted) | random, expected n | progressive over densities, several frames, any importance |
 //! | [`exactly`] | n | a fixed budget, each prefix a good set |
+//! | [`exactly_relaxed`] | n | even points, for pictures and scattering: no weights |
 //! | [`Warp`] | n | few accurate samples of a pixel map: the least error per sample, but no fixed sequence |
 //! | [`Placement::aligned`](crate::Placement::aligned) | expected n | constant importance: a complete level, as accurate as the best known sets |
 //!
@@ -33,6 +34,7 @@
 //! centers by itself. Under *constant* importance alone all points move by the same rule and stay
 //! uniform: there equal weights, area/(expected number), are unbiased for relaxed points, too.
 
+mod even;
 mod exact;
 mod order;
 mod seamless;
@@ -41,6 +43,7 @@ pub(crate) mod sums;
 mod warp;
 mod weighted;
 
+pub use even::exactly_relaxed;
 pub use exact::{ExactError, exactly};
 pub use seamless::SeamlessSet;
 pub use stratified::post_stratify;

@@ -10,6 +10,14 @@ pub(super) const REACH: f32 = 1.5;
 pub(super) const PULL: f32 = 1.0;
 /// Both forces are gradients of the kernel (1 − u²)⁴ · 5/(π R²), whose weight grows as its reach shrinks.
 const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PULL);
+/// What darker pixels pull with, at most, on a dot on flat ground: so many times the ground's own tone. The pull's
+/// sharpening draws dots across an edge; where the ground is flat right up to it there is nothing to sharpen, and
+/// the dots are missing there. Discs on grounds 1.4 to 10 times lighter, hard and smoothed, had up to 1.2 % too many
+/// dots and their grounds .1 to 1.5 % too few; at 1.3 or 1.5 most are off by less than .3 % and at 1.4 a little less.
+pub(super) const FLAT_PULL: f32 = 1.4;
+/// So many of the nine pixels about a place are of the lightest or the darkest tone among them on flat ground,
+/// also where a smoothed edge passes. With fewer, photographs have flat ground as well, and lose contrast.
+pub(super) const FLAT: usize = 6;
 
 /// Force on a dot at (x, y) where the spacing is `spacing`, for dots and a picture of width × height pixels:
 ///
@@ -18,6 +26,7 @@ const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PU
 ///   − (R/r)⁴ Σ pixels m   mass(m) (p − m) (1 − |p − m|² / r²)₊³        r = 1 spacing
 /// ```
 ///
+/// where mass(m) is no more than the [`ceiling`] at p,
 /// with dots and pixels mirrored at the borders. Dots lie in runs, one for each row of cells, and pixels
 /// in rows; both are looked at eight at a time:
 ///
@@ -130,6 +139,7 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
     // distances of the lanes' pixels in the first block
     let (mut fx, mut fy) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let from = u - u0 as f32 - 0.5;
+    let ceiling = ceiling(density, u as usize, v as usize);
     for row in v0..=v1 {
         let dy = v - row as f32 - 0.5;
         let start = row * density.stride + u0;
@@ -140,7 +150,8 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
             for lane in 0..LANES {
                 let dx = first - LANE[lane] as f32;
                 let near = positive(near_y - dx * dx * inverse);
-                let weight = near * near * near * masses[lane];
+                let mass = if masses[lane] < ceiling { masses[lane] } else { ceiling };
+                let weight = near * near * near * mass;
                 fx[lane] += dx * weight;
                 fy[lane] += dy * weight;
             }
@@ -148,6 +159,33 @@ fn pull(density: &Density, x: f32, y: f32, reach: f32) -> [f32; 2] {
         }
     }
     [sum(fx) / parts, sum(fy) / parts]
+}
+
+/// The most that a part of a pixel pulls with on a dot at part (u, v): on flat ground [`FLAT_PULL`] times the
+/// ground's tone, which beside an edge is the lighter one, unless the dot is on the darker; between the two, half
+/// of each.
+#[inline(always)]
+fn ceiling(density: &Density, u: usize, v: usize) -> f32 {
+    // whole pixels, or groups, to the left and right, above and below
+    let side = (density.parts_per_pixel as usize).max(1);
+    let mut about = [[0.0_f32; 3]; 3];
+    for (j, row) in about.iter_mut().enumerate() {
+        let start = (v + j * side).saturating_sub(side) * density.stride;
+        for (i, mass) in row.iter_mut().enumerate() {
+            let column = (u + i * side).saturating_sub(side);
+            *mass = density.mass.get(start + column).copied().unwrap_or(0.0);
+        }
+    }
+    let own = about[1][1];
+    let about = about.as_flattened();
+    let lower = |a: f32, b: &f32| if *b < a { *b } else { a };
+    let higher = |a: f32, b: &f32| if *b > a { *b } else { a };
+    let (lightest, darkest) = (about.iter().fold(own, lower), about.iter().fold(own, higher));
+    let alike = about.iter().filter(|mass| **mass == lightest || **mass == darkest).count();
+    if alike < FLAT {
+        return f32::INFINITY;
+    }
+    FLAT_PULL * if own == darkest { own } else { 0.5 * (lightest + own) }
 }
 
 /// The pull where the spacing is less than [`FINEST`] parts of pixels: parts are divided further, into

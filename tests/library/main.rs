@@ -3,6 +3,7 @@
 mod common;
 mod digits;
 mod estimates;
+mod exact_counts;
 mod floors;
 mod frame;
 mod hard_domains;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use glam::DVec2;
-use twelvefold::estimate::{ExactError, exactly};
+use twelvefold::estimate::{ExactError, exactly, exactly_relaxed};
 use twelvefold::refine::{ClassRefiner, Classes, ITERATIONS, RefineError, Refiner};
 use twelvefold::{
     Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Pixels, Placement, Sample,
@@ -212,7 +212,18 @@ fn raw<E>(
 ) -> Result<(), DotsError<E>> {
     let invalid = InvalidPixels::Reject;
     match (wish.count, wish.centers) {
-        (Count::Exactly(count), _) => {
+        (Count::Exactly(count), Centers::Relaxed) => {
+            let map = Pixels::new(width, height, importance, invalid)
+                .and_then(|pixels| StippleMap::new(pixels, count as f64))
+                .map_err(DotsError::Map)?;
+            let placement = Placement::new(map.domain(), wish.seed);
+            let dots = exactly_relaxed(&placement, &map, count, Limits::default())
+                .map_err(DotsError::Exact)?;
+            dots.iter().try_for_each(|dot| {
+                take(dot.position, key(dot, &map, wish.ranked)).map_err(DotsError::Taker)
+            })
+        }
+        (Count::Exactly(count), Centers::Fixed) => {
             let map = Pixels::new(width, height, importance, invalid)
                 .and_then(ImageMap::new)
                 .map_err(DotsError::Map)?;
@@ -254,11 +265,15 @@ fn stream<I: Importance, E>(
 ) -> Result<(), DotsError<E>> {
     // In 64 bits because 32 would be too few in a picture with sides of very different length.
     for point in sampling.points().map_err(DotsError::Sampling)? {
-        let Sample::<DVec2> { position, rank } = point.map_err(DotsError::Sampling)?;
-        // The density at which it appears; a relaxed point may have left what it was accepted by.
-        let key =
-            if ranked { rank as f64 / map.value(position).max(f64::MIN_POSITIVE) } else { 0.0 };
-        take(position, key).map_err(DotsError::Taker)?;
+        let point = point.map_err(DotsError::Sampling)?;
+        take(point.position, key(&point, map, ranked)).map_err(DotsError::Taker)?;
     }
     Ok(())
+}
+
+/// The density at which a point appears, if points are ranked.
+fn key<I: Importance>(point: &Sample<DVec2>, map: &I, ranked: bool) -> f64 {
+    // A relaxed point may have left what it was accepted by.
+    let value = || map.value(point.position).max(f64::MIN_POSITIVE);
+    if ranked { point.rank as f64 / value() } else { 0.0 }
 }

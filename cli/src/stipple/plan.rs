@@ -8,7 +8,7 @@ use twelvefold_files::picture::Picture;
 
 use super::budget::{default_count, default_dot_size};
 use super::dots::{self, Count, STREAMED, Wish};
-use crate::args::{Centers, MAX_EXACT, MAX_POINTS, StippleOptions};
+use crate::args::{MAX_EXACT, MAX_POINTS, StippleOptions};
 use crate::drawing::{Format, Look};
 use crate::page::color::Color;
 use crate::page::length::Length;
@@ -183,7 +183,7 @@ impl Plan {
                 Some(count) => Count::Exactly(count as usize),
                 None => Count::About(count),
             },
-            centers: options.centers.unwrap_or(Centers::Relaxed),
+            centers: options.centers,
             seed: options.seed,
             refine: options
                 .refine

@@ -228,7 +228,8 @@ fn exact_stippling_has_exactly_as_many_dots_and_grows_by_its_end() {
     image::DynamicImage::ImageLuma8(image).save(&photo).unwrap();
     let photo = photo.to_str().unwrap();
     let dots = |n: &str| {
-        let output = run(&["stipple", photo, "--exact", n, "--refine", "0", "-o", "-", "--quiet"]);
+        let options = ["--refine", "0", "--centers", "fixed", "-o", "-", "--quiet"];
+        let output = run(&[&["stipple", photo, "--exact", n], &options[..]].concat());
         assert!(output.status.success(), "{output:?}");
         String::from_utf8(output.stdout).unwrap()
     };

@@ -47,14 +47,18 @@ fn more_dots_than_memory_is_one_line_and_no_file() {
     let (name, bytes) = specimens().swap_remove(0);
     let photo = written(&folder, name, &bytes);
     // The list of the result does not fit; then that does, but not the candidates.
-    for (kilobytes, count) in [("350000", "10000000"), ("300000", "5000000")] {
+    for (kilobytes, count, centers) in [
+        ("350000", "10000000", "fixed"),
+        ("300000", "5000000", "fixed"),
+        ("250000", "10000000", "relaxed"),
+    ] {
         let target = folder.path().join("dots.csv");
         let output = std::process::Command::new("sh")
             .args(["-c", "ulimit -v $0 && exec \"$@\"", kilobytes])
             .arg(env!("CARGO_BIN_EXE_twelvefold"))
             .arg("stipple")
             .arg(&photo)
-            .args(["--exact", count, "--quiet", "-o"])
+            .args(["--exact", count, "--centers", centers, "--quiet", "-o"])
             .arg(&target)
             .output()
             .unwrap();

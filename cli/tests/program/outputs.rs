@@ -155,7 +155,12 @@ fn dot_size_is_a_diameter_in_pixels_of_the_photograph() {
         let tolerance = if size > 10.0 { 0.4 } else { 0.03 };
         assert!((ink / wanted - 1.0).abs() < tolerance, "{size} x {scale}: {ink} for {wanted}");
         let svg = String::from_utf8(file(&photograph(), "a.svg", &options)).unwrap();
-        assert!(svg.contains(&format!(" stroke-width=\"{size}")));
+        let width = svg.split("stroke-width=\"").nth(1).and_then(|rest| rest.split('"').next());
+        let width: f64 = width.unwrap().parse().unwrap();
+        // A stroke with round caps, a hundredth long, of the disc's area.
+        let area = std::f64::consts::PI / 4.0 * width * width + 0.01 * width;
+        let disc = std::f64::consts::PI / 4.0 * size * size;
+        assert!((area / disc - 1.0).abs() < 0.002, "{size}: {width}");
     }
 }
 
@@ -196,4 +201,24 @@ fn the_best_dots_are_as_many_and_not_the_refined_ones() {
     let options = ["-o", "-", "--best", "--refine", "0"];
     let complaint = crate::complaint_about("--best", &stipple(&photograph(), &options));
     assert!(complaint.contains("--refine 0"), "{complaint}");
+}
+
+#[test]
+fn exactly_so_many_dots_are_relaxed_unless_told() {
+    let options = |centers: &[&str], refine| {
+        let mut all = vec!["--exact", "1234", "--refine", refine];
+        all.extend_from_slice(centers);
+        csv(&photograph(), &all)
+    };
+    for refine in ["0", "3"] {
+        let relaxed = options(&[], refine);
+        assert_eq!(dots(&relaxed).len(), 1234);
+        assert_eq!(relaxed, options(&["--centers", "relaxed"], refine));
+        let fixed = options(&["--centers", "fixed"], refine);
+        assert_eq!(dots(&fixed).len(), 1234);
+        assert_ne!(fixed, relaxed);
+    }
+    // The fixed ones are progressive.
+    let fewer = csv(&photograph(), &["--exact", "1000", "--refine", "0", "--centers", "fixed"]);
+    assert!(options(&["--centers", "fixed"], "0").starts_with(&fewer));
 }

@@ -31,11 +31,13 @@ impl Cell {
     }
 }
 
-/// Samples a pixel has on a side, so that a dot's cell has some sixty: as many as make centroids exact to
-/// a hundredth of a spacing.
+/// Samples a pixel has on a side, so that a dot's cell has two hundred where the photograph is darkest. With sixty
+/// a dot on average, cells there have some twenty, and centroids stick to samples: a hundred rounds of Lloyd's method
+/// then leave a tone error half as large again.
 fn fineness(darkness: &Darkness<'_>, dots: usize) -> usize {
-    let pixels = (darkness.width * darkness.height) as f64 / dots as f64;
-    ((60.0 / pixels).sqrt().ceil() as usize).clamp(1, 16)
+    let darkest = darkness.values.iter().fold(0.0_f32, |most, &value| most.max(value));
+    let pixels = darkness.sum() / f64::from(darkest) / dots as f64;
+    ((200.0 / pixels).sqrt().ceil() as usize).clamp(1, 32)
 }
 
 /// The cells of dots, which lie in the photograph.
