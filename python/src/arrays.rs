@@ -73,8 +73,23 @@ impl<'a, 'py> Numbers<'a, 'py> {
         array.extract().map_err(|_| error::kind(format!("{} is no array of numbers", self.name)))
     }
 
+    /// Its whole numbers row by row; those past 63 bits are negative.
+    ///
+    /// # Errors
+    /// `TypeError` for another dtype.
+    pub(crate) fn integers(&self) -> PyResult<Vec<i64>> {
+        if !matches!(self.array.dtype().kind(), b'i' | b'u') {
+            return Err(self.of_type("integers are read"));
+        }
+        let array = self.array.call_method1("astype", ("int64",))?;
+        let array = array
+            .extract()
+            .map_err(|_| error::kind(format!("{} is no array of numbers", self.name)))?;
+        copied(&array, |number| number)
+    }
+
     /// Its numbers row by row, as `T`, in one copy if they are stored as one of the usual types.
-    fn collect<T: From<f32> + Copy + numpy::Element>(
+    pub(crate) fn collect<T: From<f32> + Copy + numpy::Element>(
         &self,
         narrow: fn(f64) -> T,
     ) -> PyResult<Vec<T>> {
