@@ -348,6 +348,15 @@ impl<'t> Placement<'t> {
         }
     }
 
+    /// The first of them from tile `i` on, and which it is; of a seamless domain, those whose ranks are not
+    /// below `limit` are passed over.
+    pub(crate) fn frontier_below(&self, i: usize, limit: u64) -> Option<(usize, Node)> {
+        match &self.torus {
+            None => Some((i, (*self.frontier.get(i)?)?)),
+            Some(torus) => torus.node_below(&self.tables, &self.numbering, i, limit),
+        }
+    }
+
     /// The root of a tile of the frontier, and the way from it, which always is.
     pub(crate) fn way_to(&self, node: &Node) -> (Node, Result<FCode, RankError>) {
         match &self.torus {

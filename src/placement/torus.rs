@@ -135,6 +135,27 @@ impl Torus {
         Some(Node { center: self.home(node.center, 1), ..node })
     }
 
+    /// The first tile of the frontier, from tile `i` on, whose rank is below `limit`, and which it is: what
+    /// few points are made of is found without looking at all the others.
+    pub(super) fn node_below(
+        &self,
+        tables: &Tables<'_>,
+        numbering: &Numbering,
+        i: usize,
+        limit: u64,
+    ) -> Option<(usize, Node)> {
+        let roots = Self::roots(self.cells);
+        let (place, digit) = ((i / MAX_CHILDREN) as u64, (i % MAX_CHILDREN) as u64);
+        // Ranks rise with digits: where this one's is too high, so are those of the digits after it.
+        let i = if digit * roots + place < limit { i } else { i - i % MAX_CHILDREN + MAX_CHILDREN };
+        // And with places, of the digit 0.
+        let place = (i / MAX_CHILDREN) as u64;
+        if place >= limit {
+            return None;
+        }
+        Some((i, self.node(tables, numbering, i)?))
+    }
+
     /// The root of a tile of the frontier, and the way from it.
     pub(super) fn way_to(&self, node: &Node) -> (Node, Result<FCode, RankError>) {
         let roots = Self::roots(self.cells);

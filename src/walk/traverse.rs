@@ -66,8 +66,10 @@ const KIN_LEVELS: u8 = 3;
 pub(crate) struct Traversal<K> {
     open: [OpenTile<K>; MAX_OPEN],
     depth: usize,
-    /// The number of frontier tiles begun.
+    /// The number of frontier tiles begun, or passed over.
     frontier: usize,
+    /// Ranks from which on no tile of the frontier can have points, in a seamless domain.
+    ranks: u64,
     /// How many ranks the bound of the frontier tile begun last admits, while only that tile's center
     /// has been tested.
     begun: Option<u64>,
@@ -88,6 +90,7 @@ impl<K: Mode> Traversal<K> {
             open: [OpenTile::CLOSED; MAX_OPEN],
             depth: 0,
             frontier: 0,
+            ranks: ranks_of_all(sampling),
             begun: None,
             clip: sampling.clip(),
             shard,
@@ -156,10 +159,9 @@ impl<K: Mode> Traversal<K> {
             } else if let Some(limit) = self.begun.take() {
                 limit
             } else {
-                let Some(node) = sampling.placement().frontier_node(self.frontier) else {
-                    return Ok(false);
-                };
-                self.frontier += 1;
+                let next = sampling.placement().frontier_below(self.frontier, self.ranks);
+                let Some((i, node)) = next else { return Ok(false) };
+                self.frontier = i + 1;
                 self.begun = self.enter_frontier(sampling, &node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
@@ -319,6 +321,19 @@ impl<K: Mode> Traversal<K> {
         (self.batch.end, self.batch.sure) = (end, if constant { end } else { 0 });
         Ok(taken)
     }
+}
+
+/// The least rank that the importance's bound over all of a seamless domain does not admit: tiles of the
+/// frontier are many there, and only those below it are looked at.
+fn ranks_of_all<I: Importance>(sampling: &Sampling<'_, I>) -> u64 {
+    let (placement, importance) = (sampling.placement(), sampling.importance());
+    // A bound that need not hold may be higher over a part than over the whole.
+    if !placement.is_seamless() || !importance.bounds_hold() {
+        return u64::MAX;
+    }
+    let all = placement.domain().disc();
+    // What is wrong with it is said where the walk meets it.
+    sampling.rank_limit_of_bound(importance.upper_bound(&all), &all).unwrap_or(u64::MAX)
 }
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
