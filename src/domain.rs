@@ -136,7 +136,7 @@ impl Domain {
 
     /// The images of a disc, shifted by the domain's sides, that touch the domain: at least one of a disc whose
     /// center is less than a side outside.
-    pub(crate) fn images(&self, region: &Disc) -> impl Iterator<Item = Disc> {
+    pub(crate) fn images(&self, region: &Disc) -> impl Iterator<Item = Disc> + use<> {
         let (low, high, size) = (self.min, self.max(), self.size);
         // A little more, so that rounding loses none.
         let radius = region.radius + 1e-9 * size.max_element();

@@ -73,19 +73,20 @@ impl<'a, 'py> Numbers<'a, 'py> {
         array.extract().map_err(|_| error::kind(format!("{} is no array of numbers", self.name)))
     }
 
-    /// Its whole numbers row by row; those past 63 bits are negative.
+    /// Its whole numbers row by row; those past 63 bits as the greatest.
     ///
     /// # Errors
     /// `TypeError` for another dtype.
     pub(crate) fn integers(&self) -> PyResult<Vec<i64>> {
-        if !matches!(self.array.dtype().kind(), b'i' | b'u') {
-            return Err(self.of_type("integers are read"));
+        let broken = |_| error::kind(format!("{} is no array of numbers", self.name));
+        let converted = |dtype: &str| self.array.call_method1("astype", (dtype,));
+        match self.array.dtype().kind() {
+            b'i' => copied(&converted("int64")?.extract().map_err(broken)?, |number| number),
+            b'u' => copied(&converted("uint64")?.extract().map_err(broken)?, |number: u64| {
+                i64::try_from(number).unwrap_or(i64::MAX)
+            }),
+            _ => Err(self.of_type("integers are read")),
         }
-        let array = self.array.call_method1("astype", ("int64",))?;
-        let array = array
-            .extract()
-            .map_err(|_| error::kind(format!("{} is no array of numbers", self.name)))?;
-        copied(&array, |number| number)
     }
 
     /// Its numbers row by row, as `T`, in one copy if they are stored as one of the usual types.

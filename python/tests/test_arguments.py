@@ -192,7 +192,7 @@ HALVES = [[0, 1, 2], [0, 2, 3]]
         ({"faces": [[0.0, 1.0, 2.0]]}, TypeError, "faces has dtype float64; integers"),
         ({"faces": [[0, 1, 2], [0, 4, 2]]}, ValueError, r"faces\[1, 1\] is 4, .* 4 rows"),
         ({"faces": [[0, 1, -1]]}, ValueError, r"faces\[0, 2\] is -1"),
-        ({"faces": [[2**63, 1, 2]]}, ValueError, r"faces\[0, 0\] is -"),
+        ({"faces": np.array([[2**63, 1, 2]], "u8")}, ValueError, r"faces\[0, 0\] is 9223"),
         ({"faces": np.zeros((0, 3), int)}, ValueError, "no triangle with area"),
         ({"density": [1, 2, 3]}, ValueError, r"density has shape \(3,\).*\(4,\), one for each vertex"),
         ({"density": [1, 2, -3, 4]}, ValueError, r"density\[2\], at a corner of faces\[0\], is -3"),

@@ -136,6 +136,8 @@ GOLDEN = {
     "raw": "710512d40617a16a",
     "exact": "daa8d5c694602445",
     "inverted": "b693bbc156ea1a7e",
+    "linear": "2c7e630f8d905b64",
+    "best": "0a66f7e363cf5be7",
     "sobol": "e6d3143a33759cc0",
     "progressive": "81d4fd6432026e42",
     "warp": "f83e52963d2be4ba",
