@@ -97,8 +97,8 @@ def test_seamless_numbers_are_exact_and_placements_kept():
     assert not (twelvefold.exactly(wide, 100, seed=3)[0] == expected[0]).all()
     with pytest.raises(ValueError, match="density is 10, .*seamless"):
         twelvefold.Placement(density=10, seamless=True)
-    with pytest.raises(ValueError, match="1 to 3.5 are not"):
-        twelvefold.Placement((0, 0, 1, 3.5), seamless=True).sample(n=1)
+    # As 2 to 7.
+    assert len(twelvefold.Placement((0, 0, 1, 3.5), seamless=True).sample(n=9)) == 9
     with pytest.raises(ValueError, match="whole numbers up to 16"):
         twelvefold.Placement((0, 0, 1, 40), seamless=True)
 
