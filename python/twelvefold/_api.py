@@ -122,7 +122,8 @@ def sample(
     seamless : bool
         Points without a border: opposite sides of the domain are one, and copies of the points side by
         side in rows and columns show no seam, if the importance shows none. The domain's sides must be as
-        k to l, whole numbers up to 16 (1:1, 3:2, 16:9 …). Uniform density gets exactly n points.
+        k to l, whole numbers up to 16 (1:1, 3:2, 16:9 …). Uniform density gets exactly n points. Where
+        density is below that of 780·k·l points, they are not relaxed: choose small k and l.
     dtype : 'float32' or 'float64'
         Of the positions. By default float32; with weights, float64.
     weights : bool

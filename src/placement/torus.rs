@@ -135,6 +135,17 @@ impl Torus {
         Some(Node { center: self.home(node.center, 1), ..node })
     }
 
+    /// Whether there is more than one.
+    pub(super) fn has_many_cells(&self) -> bool {
+        self.cells != [1, 1]
+    }
+
+    /// The root of tile `i` of the frontier, with its center in the domain.
+    pub(super) fn root_of(&self, i: usize) -> Node {
+        let root = self.root((i / MAX_CHILDREN) as u64);
+        Node { center: self.home(root.center, 0), ..root }
+    }
+
     /// The first tile of the frontier, from tile `i` on, whose rank is below `limit`, and which it is: what
     /// few points are made of is found without looking at all the others.
     pub(super) fn node_below(

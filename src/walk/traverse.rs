@@ -22,6 +22,7 @@ use super::chunk::Chunk;
 use super::context::Context;
 use super::count::{count_below, count_below_at_most, levels_below, work_below};
 use super::displaced::Displaced;
+use super::frontier::Frontier;
 use super::mode::Mode;
 use super::open::OpenTile;
 use super::seam::Seam;
@@ -66,10 +67,7 @@ const KIN_LEVELS: u8 = 3;
 pub(crate) struct Traversal<K> {
     open: [OpenTile<K>; MAX_OPEN],
     depth: usize,
-    /// The number of frontier tiles begun, or passed over.
-    frontier: usize,
-    /// Ranks from which on no tile of the frontier can have points, in a seamless domain.
-    ranks: u64,
+    frontier: Frontier,
     /// How many ranks the bound of the frontier tile begun last admits, while only that tile's center
     /// has been tested.
     begun: Option<u64>,
@@ -89,8 +87,7 @@ impl<K: Mode> Traversal<K> {
         Self {
             open: [OpenTile::CLOSED; MAX_OPEN],
             depth: 0,
-            frontier: 0,
-            ranks: ranks_of_all(sampling),
+            frontier: Frontier::new(sampling),
             begun: None,
             clip: sampling.clip(),
             shard,
@@ -159,9 +156,9 @@ impl<K: Mode> Traversal<K> {
             } else if let Some(limit) = self.begun.take() {
                 limit
             } else {
-                let next = sampling.placement().frontier_below(self.frontier, self.ranks);
-                let Some((i, node)) = next else { return Ok(false) };
-                self.frontier = i + 1;
+                let Some(node) = self.frontier.next::<K>(sampling, &self.clip) else {
+                    return Ok(false);
+                };
                 self.begun = self.enter_frontier(sampling, &node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);
@@ -321,19 +318,6 @@ impl<K: Mode> Traversal<K> {
         (self.batch.end, self.batch.sure) = (end, if constant { end } else { 0 });
         Ok(taken)
     }
-}
-
-/// The least rank that the importance's bound over all of a seamless domain does not admit: tiles of the
-/// frontier are many there, and only those below it are looked at.
-fn ranks_of_all<I: Importance>(sampling: &Sampling<'_, I>) -> u64 {
-    let (placement, importance) = (sampling.placement(), sampling.importance());
-    // A bound that need not hold may be higher over a part than over the whole.
-    if !placement.is_seamless() || !importance.bounds_hold() {
-        return u64::MAX;
-    }
-    let all = placement.domain().disc();
-    // What is wrong with it is said where the walk meets it.
-    sampling.rank_limit_of_bound(importance.upper_bound(&all), &all).unwrap_or(u64::MAX)
 }
 
 /// How many of the entries born at most `levels` levels below a tile are accepted whatever the
