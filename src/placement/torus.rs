@@ -19,8 +19,8 @@ use crate::tree::node::Node;
 /// The level of the roots: their children are the frontier.
 pub(super) const ROOT_LEVEL: u8 = 3;
 
-/// The most cells along a side: the rectangles of screens and sheets are within 16 : 9, whose 576 roots cost
-/// every walk half a millisecond.
+/// The most cells along a side: the rectangles of screens and sheets are within 16 : 9, whose 576 roots with all
+/// their children cost a walk that needs them half a millisecond.
 pub(super) const MAX_CELLS: u32 = 16;
 
 /// How far, relatively, the ratio of the sides may be from k : l: sides that once were `f32` are this near.
