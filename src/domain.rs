@@ -133,6 +133,20 @@ impl Domain {
             radius: self.diagonal() * (0.5 + 1e-9) + 1e-15 * self.min.abs().max_element(),
         }
     }
+
+    /// The images of a disc, shifted by the domain's sides, that touch the domain: at least one of a disc whose
+    /// center is less than a side outside.
+    pub(crate) fn images(&self, region: &Disc) -> impl Iterator<Item = Disc> + use<> {
+        let (low, high, size) = (self.min, self.max(), self.size);
+        // A little more, so that rounding loses none.
+        let radius = region.radius + 1e-9 * size.max_element();
+        let Disc { center, radius: own } = *region;
+        let shifts = (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(x.into(), y.into())));
+        shifts.map(move |shift| center + shift * size).filter_map(move |center| {
+            let touches = center.clamp(low, high).distance_squared(center) <= radius * radius;
+            touches.then_some(Disc { center, radius: own })
+        })
+    }
 }
 
 /// A closed disc in the caller's units: where the points of a subtree can lie.

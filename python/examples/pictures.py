@@ -97,6 +97,49 @@ for axis, center in zip(axes, (0.3, 0.45, 0.6)):
 save(figure, "frames.png")
 
 # %% [markdown]
+# ## A tile that repeats
+# `seamless=True` leaves the domain no border. Nine copies, of which the outer ones are cut; ticks in the
+# margin tell where they meet.
+
+# %%
+u, v = 2 * np.pi * x, 2 * np.pi * y
+waves = 1.1 + 0.5 * (np.cos(u + np.sin(2 * v)) + np.cos(v - np.sin(u)))
+figure, axes = panels(2, 8, 4)
+for axis, seamless in zip(axes, (True, False)):
+    tile = twelvefold.sample(waves, 1500, seed=7, seamless=seamless)
+    nine = np.concatenate([tile + [300 * i, 300 * j] for i in range(3) for j in range(3)])
+    dots(axis, nine, 5, (900, 900))
+    axis.set(xlim=(190, 710), ylim=(710, 190))
+    axis.set(xticks=[300, 600], yticks=[300, 600], xticklabels=[], yticklabels=[])
+    axis.set_title("seamless" if seamless else "with a border", fontsize=9)
+save(figure, "seamless.png")
+
+# %% [markdown]
+# ## On a mesh
+# A ring of 24,000 triangles, seen from above; points are four times as dense on the right as on the left.
+
+# %%
+along, around = np.meshgrid(np.arange(400), np.arange(30), indexing="ij")
+turn, angle = 2 * np.pi * along / 400, 2 * np.pi * around / 30
+radius = 1 + 0.45 * np.cos(angle)
+vertices = np.stack([radius * np.cos(turn), radius * np.sin(turn), 0.45 * np.sin(angle)], axis=-1)
+vertices = vertices.reshape(-1, 3)
+corner = 30 * along + around
+right, below = np.roll(corner, -1, axis=1), np.roll(corner, -1, axis=0)
+across = np.roll(right, -1, axis=0)
+faces = np.stack([corner, below, across, corner, across, right], axis=-1).reshape(-1, 3)
+density = 2.4 + vertices[:, 0]
+figure, axes = panels(2, 9, 4)
+for axis, relax in zip(axes, (0, 10)):
+    points, on, weights = twelvefold.mesh_points(
+        vertices, faces, 6000, density=density, relax=relax
+    )
+    above = points[points[:, 2] > 0]
+    axis.scatter(above[:, 0], above[:, 1], s=2.5, color="black", linewidths=0)
+    axis.set_title(f"relax={relax}", fontsize=9)
+save(figure, "mesh.png")
+
+# %% [markdown]
 # ## Towards the light
 # Directions in proportion to the radiance of a sky with a low sun, over the map.
 

@@ -30,7 +30,12 @@ pub(crate) fn flag(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<bool> {
 
 /// A number, or nothing.
 pub(crate) fn number(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Option<f64>> {
-    argument.map(|argument| simple(name, argument, "a number")).transpose()
+    argument.map(|argument| given(name, argument)).transpose()
+}
+
+/// A number that is there.
+pub(crate) fn given(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<f64> {
+    simple(name, argument, "a number")
 }
 
 /// The items of a sequence of this length: a tuple, a list, an array.

@@ -73,8 +73,24 @@ impl<'a, 'py> Numbers<'a, 'py> {
         array.extract().map_err(|_| error::kind(format!("{} is no array of numbers", self.name)))
     }
 
+    /// Its whole numbers row by row; those past 63 bits as the greatest.
+    ///
+    /// # Errors
+    /// `TypeError` for another dtype.
+    pub(crate) fn integers(&self) -> PyResult<Vec<i64>> {
+        let broken = |_| error::kind(format!("{} is no array of numbers", self.name));
+        let converted = |dtype: &str| self.array.call_method1("astype", (dtype,));
+        match self.array.dtype().kind() {
+            b'i' => copied(&converted("int64")?.extract().map_err(broken)?, |number| number),
+            b'u' => copied(&converted("uint64")?.extract().map_err(broken)?, |number: u64| {
+                i64::try_from(number).unwrap_or(i64::MAX)
+            }),
+            _ => Err(self.of_type("integers are read")),
+        }
+    }
+
     /// Its numbers row by row, as `T`, in one copy if they are stored as one of the usual types.
-    fn collect<T: From<f32> + Copy + numpy::Element>(
+    pub(crate) fn collect<T: From<f32> + Copy + numpy::Element>(
         &self,
         narrow: fn(f64) -> T,
     ) -> PyResult<Vec<T>> {

@@ -9,6 +9,7 @@ mod environment;
 mod error;
 mod exact;
 mod measure;
+mod mesh;
 mod output;
 mod placement;
 mod sampling;
@@ -28,5 +29,6 @@ fn native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(placement::sample, module)?)?;
     module.add_function(wrap_pyfunction!(placement::exactly, module)?)?;
     module.add_function(wrap_pyfunction!(environment::environment, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh::mesh_points, module)?)?;
     module.add_function(wrap_pyfunction!(measure::measure, module)?)
 }

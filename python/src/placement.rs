@@ -22,11 +22,19 @@ impl Placement {
         domain: &Bound<'_, PyAny>,
         seed: &Bound<'_, PyAny>,
         density: Option<&Bound<'_, PyAny>>,
+        seamless: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let domain = arguments::domain("domain", domain)?;
         let seed = arguments::seed(seed)?;
+        let seamless = arguments::flag("seamless", seamless)?;
         let inner = match arguments::number("density", density)? {
-            None => twelvefold::Placement::new(domain, seed),
+            None => made(domain, seed, seamless)?,
+            Some(density) if seamless => {
+                return Err(error::value(format!(
+                    "density is {density}, but the levels of a seamless placement are settled: \
+                     give one of the two"
+                )));
+            }
             Some(density) => twelvefold::Placement::aligned(domain, seed, density)
                 .map_err(|reason| error::value(format!("density is {density}: {reason}")))?,
         };
@@ -40,11 +48,21 @@ impl Placement {
     }
 }
 
+/// A domain's placement, with a border or without one.
+fn made(domain: Domain, seed: u64, seamless: bool) -> PyResult<twelvefold::Placement<'static>> {
+    if seamless {
+        twelvefold::Placement::seamless(domain, seed).map_err(error::sampling)
+    } else {
+        Ok(twelvefold::Placement::new(domain, seed))
+    }
+}
+
 /// A placement to use, or what one is made of.
 struct Place<'a, 'py> {
     kept: Option<&'a Bound<'py, Placement>>,
     domain: Option<Domain>,
     seed: u64,
+    seamless: bool,
 }
 
 impl<'a, 'py> Place<'a, 'py> {
@@ -52,19 +70,21 @@ impl<'a, 'py> Place<'a, 'py> {
         kept: Option<&'a Bound<'py, Placement>>,
         domain: Option<&Bound<'_, PyAny>>,
         seed: &Bound<'_, PyAny>,
+        seamless: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
         let domain = domain.map(|domain| arguments::domain("domain", domain)).transpose()?;
         let domain = kept.map(|kept| kept.get().inner.domain()).or(domain);
-        Ok(Self { kept, domain, seed: arguments::seed(seed)? })
+        let seed = arguments::seed(seed)?;
+        Ok(Self { kept, domain, seed, seamless: arguments::flag("seamless", seamless)? })
     }
 
     /// The placement, of this domain if none is given.
-    fn placement(&self, of_importance: Domain) -> Arc<twelvefold::Placement<'static>> {
+    fn placement(&self, of_importance: Domain) -> PyResult<Arc<twelvefold::Placement<'static>>> {
         match self.kept {
-            Some(kept) => Arc::clone(&kept.get().inner),
+            Some(kept) => Ok(Arc::clone(&kept.get().inner)),
             None => {
                 let domain = self.domain.unwrap_or(of_importance);
-                Arc::new(twelvefold::Placement::new(domain, self.seed))
+                Ok(Arc::new(made(domain, self.seed, self.seamless)?))
             }
         }
     }
@@ -83,6 +103,7 @@ pub(crate) fn sample<'py>(
     kept: Option<&Bound<'py, Placement>>,
     domain: Option<&Bound<'py, PyAny>>,
     seed: &Bound<'py, PyAny>,
+    seamless: &Bound<'py, PyAny>,
     importance: Option<&Bound<'py, PyAny>>,
     n: Option<&Bound<'py, PyAny>>,
     density: Option<&Bound<'py, PyAny>>,
@@ -103,12 +124,12 @@ pub(crate) fn sample<'py>(
         part,
     }
     .check()?;
-    let place = Place::new(kept, domain, seed)?;
+    let place = Place::new(kept, domain, seed, seamless)?;
     match importance {
-        None => sampling::receive(py, place.placement(Domain::UNIT), || Ok(Constant::ONE), wish),
+        None => sampling::receive(py, place.placement(Domain::UNIT)?, || Ok(Constant::ONE), wish),
         Some(array) => {
             let image = arrays::importance("importance", array)?;
-            let placement = place.placement(pixels(&image)?);
+            let placement = place.placement(pixels(&image)?)?;
             let domain = placement.domain();
             sampling::receive(py, placement, move || arrays::map(image, domain), wish)
         }
@@ -122,16 +143,17 @@ pub(crate) fn exactly<'py>(
     kept: Option<&Bound<'py, Placement>>,
     domain: Option<&Bound<'py, PyAny>>,
     seed: &Bound<'py, PyAny>,
+    seamless: &Bound<'py, PyAny>,
     importance: Option<&Bound<'py, PyAny>>,
     n: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let n = arguments::count(n)?;
-    let place = Place::new(kept, domain, seed)?;
+    let place = Place::new(kept, domain, seed, seamless)?;
     match importance {
-        None => exact::receive(py, place.placement(Domain::UNIT), || Ok(Constant::ONE), n),
+        None => exact::receive(py, place.placement(Domain::UNIT)?, || Ok(Constant::ONE), n),
         Some(array) => {
             let image = arrays::importance("importance", array)?;
-            let placement = place.placement(pixels(&image)?);
+            let placement = place.placement(pixels(&image)?)?;
             let domain = placement.domain();
             exact::receive(py, placement, move || arrays::map(image, domain), n)
         }

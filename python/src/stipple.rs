@@ -9,31 +9,48 @@ use twelvefold::{
 };
 
 use crate::arrays::Image;
+use crate::tone::{self, Tone};
 use crate::work::{self, Stop};
-use crate::{arguments, error, output, tone};
+use crate::{arguments, error, output};
 
 /// The most iterations, as in the program.
 const MOST_ITERATIONS: u32 = 1000;
 
 /// Dots of a picture; see the package's documentation.
 #[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "Python's keywords, each by its name")]
 pub(crate) fn stipple<'py>(
     py: Python<'py>,
     image: &Bound<'py, PyAny>,
     n: &Bound<'py, PyAny>,
     refine: &Bound<'py, PyAny>,
+    best: &Bound<'py, PyAny>,
     exact: &Bound<'py, PyAny>,
     seed: &Bound<'py, PyAny>,
     invert: &Bound<'py, PyAny>,
+    linear: &Bound<'py, PyAny>,
+    black: &Bound<'py, PyAny>,
+    white: Option<&Bound<'py, PyAny>>,
+    gamma: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let n = arguments::count(n)?;
     let refine = arguments::whole("refine", refine, MOST_ITERATIONS)?;
+    let best = arguments::flag("best", best)?;
+    if best && refine == 0 {
+        return Err(error::value("best moves refined dots, and refine=0 asks for none"));
+    }
     let seed = arguments::seed(seed)?;
     let exact = arguments::flag("exact", exact)?;
-    let invert = arguments::flag("invert", invert)?;
-    let image = tone::importance("image", image, invert)?;
+    let tone = Tone {
+        linear: arguments::flag("linear", linear)?,
+        invert: arguments::flag("invert", invert)?,
+        black: arguments::given("black", black)?,
+        white: arguments::number("white", white)?,
+        gamma: arguments::given("gamma", gamma)?,
+    };
+    let image = tone::importance("image", image, tone)?;
     if n > 0 && image.2.iter().all(|pixel| *pixel == 0.0) {
-        let blank = if invert { "black" } else { "white" };
+        let blank = if tone.invert { "black" } else { "white" };
         return Err(error::value(format!("image is {blank}, which leaves no place for dots")));
     }
     let dots = work::run(py, move |stop| {
@@ -43,7 +60,7 @@ pub(crate) fn stipple<'py>(
             dots(copied(&image)?, n, seed)?
         };
         if refine > 0 {
-            refined(&image, &mut dots, refine, stop)?;
+            refined(&image, &mut dots, refine, best, stop)?;
         }
         Ok(dots.iter().map(|dot| dot.as_vec2().to_array()).collect())
     })?;
@@ -91,14 +108,18 @@ fn refined(
     (width, height, pixels): &Image,
     dots: &mut [DVec2],
     iterations: u32,
+    best: bool,
     stop: &Stop,
 ) -> PyResult<()> {
     let mut refiner = Refiner::new(*width, *height, pixels, dots).map_err(error::refine)?;
     for _ in 0..iterations {
         if stop.wanted() {
-            break;
+            return Ok(());
         }
         refiner.step();
+    }
+    if best {
+        refiner.polish().map_err(error::refine)?;
     }
     refiner.write(dots).map_err(error::refine)
 }

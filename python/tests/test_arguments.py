@@ -62,6 +62,13 @@ def test_a_bad_importance_is_located(importance, error, words):
         ({"n": 10, "seed": 2**64}, ValueError, "seed is 18446744073709551616"),
         ({"n": 10, "seed": 1.5}, TypeError, "seed is 1.5"),
         ({"n": 10, "domain": (1e9 + 3, 0, 1, 1)}, ValueError, "precision"),
+        ({"n": 10, "seamless": 1}, TypeError, "seamless is 1; it should be True or False"),
+        ({"n": 10, "seamless": True, "domain": (0, 0, 17, 1)}, ValueError, "whole numbers.* 17 to 1 "),
+        (
+            {"n": 10, "seamless": True, "importance": np.ones((512, 513))},
+            ValueError,
+            "whole numbers up to 16, which 513 to 512 are not",
+        ),
     ],
 )
 def test_bad_keywords_are_refused(keywords, error, words):
@@ -78,7 +85,8 @@ def test_bad_keywords_are_refused(keywords, error, words):
         (np.array([[0.5], [1.5]]), {}, ValueError, r"image\[1, 0\] is 1.5; .*from 0 to 1"),
         (np.zeros((2, 2, 3)) - 1, {}, ValueError, r"image\[0, 0, 0\] is -1"),
         (np.zeros((4, 4), "int64"), {}, TypeError, "image has dtype int64; uint8"),
-        (np.zeros((4, 4, 2)), {}, ValueError, r"image has shape \(4, 4, 2\)"),
+        (np.zeros((4, 4, 5)), {}, ValueError, r"image has shape \(4, 4, 5\)"),
+        (np.zeros((4, 4, 1)), {}, ValueError, r"image has shape \(4, 4, 1\)"),
         (np.zeros((4, 0)), {}, ValueError, r"image has shape \(4, 0\)"),
         (np.zeros((4, 4)), {"n": -3}, ValueError, "n is -3"),
         (np.zeros((4, 4)), {"n": 2.5}, TypeError, "n is 2.5"),
@@ -86,6 +94,17 @@ def test_bad_keywords_are_refused(keywords, error, words):
         (np.zeros((4, 4)), {"exact": 100}, TypeError, "exact is 100; it should be True or False"),
         (np.zeros((4, 4)), {"refine": -1}, ValueError, "refine is -1"),
         (np.zeros((4, 4)), {"refine": 1001}, ValueError, "refine is 1001.*0 to 1000"),
+        (np.zeros((4, 4)), {"best": True, "refine": 0}, ValueError, "best .*refine=0"),
+        (np.zeros((4, 4)), {"linear": "yes"}, TypeError, "linear is 'yes'"),
+        (np.zeros((4, 4)), {"gamma": 0}, ValueError, "gamma is 0; .*above 0"),
+        (np.zeros((4, 4)), {"gamma": NAN}, ValueError, "gamma is NaN"),
+        (np.zeros((4, 4)), {"gamma": None}, TypeError, "gamma is None"),
+        (np.zeros((4, 4)), {"white": 250}, ValueError, "white is 250; .*from 0 to 1"),
+        (np.zeros((4, 4), "u1"), {"white": 256}, ValueError, "white is 256; .*from 0 to 255"),
+        (np.zeros((4, 4), "u2"), {"black": -1}, ValueError, "black is -1; .*from 0 to 65535"),
+        (np.zeros((4, 4), "u1"), {"black": NAN}, ValueError, "black is NaN"),
+        (np.zeros((4, 4)), {"black": 0.5, "white": 0.5}, ValueError, "black is 0.5, not below white"),
+        (np.full((4, 4), 251, "u1"), {"white": 250}, ValueError, "image is white"),
     ],
 )
 def test_a_bad_picture_is_refused(image, keywords, error, words):
@@ -157,6 +176,46 @@ def test_bad_points_are_refused(points, keywords, words):
         twelvefold.measure(points, **keywords)
 
 
+SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+HALVES = [[0, 1, 2], [0, 2, 3]]
+
+
+@pytest.mark.parametrize(
+    "keywords, error, words",
+    [
+        ({"vertices": [[0, 0]]}, ValueError, r"vertices has shape \(1, 2\).*\(vertices, 3\)"),
+        ({"vertices": [["a", "b", "c"]]}, TypeError, "vertices has dtype <U1"),
+        ({"vertices": [[0, NAN, 0]] + SQUARE[1:]}, ValueError, r"vertices\[0\], a corner of faces\[0\]"),
+        ({"vertices": SQUARE[:3] + [[1e300, 0, 0]]}, ValueError, r"vertices\[3\].*faces\[1\].*inf"),
+        ({"vertices": [[0, 0, 0]] * 4}, ValueError, "no triangle with area"),
+        ({"faces": [[0, 1, 2, 3]]}, ValueError, r"faces has shape \(1, 4\).*\(faces, 3\)"),
+        ({"faces": [[0.0, 1.0, 2.0]]}, TypeError, "faces has dtype float64; integers"),
+        ({"faces": [[0, 1, 2], [0, 4, 2]]}, ValueError, r"faces\[1, 1\] is 4, .* 4 rows"),
+        ({"faces": [[0, 1, -1]]}, ValueError, r"faces\[0, 2\] is -1"),
+        ({"faces": np.array([[2**63, 1, 2]], "u8")}, ValueError, r"faces\[0, 0\] is 9223"),
+        ({"faces": np.zeros((0, 3), int)}, ValueError, "no triangle with area"),
+        ({"density": [1, 2, 3]}, ValueError, r"density has shape \(3,\).*\(4,\), one for each vertex"),
+        ({"density": [1, 2, -3, 4]}, ValueError, r"density\[2\], at a corner of faces\[0\], is -3"),
+        ({"density": [1, 2, 3, NAN]}, ValueError, r"density\[3\], at a corner of faces\[1\], is NaN"),
+        ({"density": [0, 0, 0, 0]}, ValueError, "both area and density"),
+        ({"n": 1.5}, TypeError, "n is 1.5"),
+        ({"relax": -1}, ValueError, "relax is -1.*0 to 1000"),
+        ({"relax": True, "seed": "a"}, TypeError, "seed is 'a'"),
+    ],
+)
+def test_a_bad_mesh_is_refused(keywords, error, words):
+    with pytest.raises(error, match=words):
+        twelvefold.mesh_points(**{"vertices": SQUARE, "faces": HALVES, "n": 10, **keywords})
+
+
+def test_what_no_face_names_may_be_anything():
+    expected = twelvefold.mesh_points(SQUARE, HALVES, 50, density=[1, 2, 3, 4])
+    found = twelvefold.mesh_points(
+        SQUARE + [[NAN, 0, np.inf]], HALVES, 50, density=[1, 2, 3, 4, NAN]
+    )
+    assert all((a == b).all() for a, b in zip(expected, found))
+
+
 def unaligned(array):
     bytes = np.zeros(array.nbytes + 1, "uint8")
     view = bytes[1:].view(array.dtype).reshape(array.shape)
@@ -184,7 +243,7 @@ def test_every_real_dtype_and_layout_of_importance_is_read(dtype):
 
 
 @pytest.mark.parametrize("dtype", ["u1", "u2", "f4", "f8"])
-@pytest.mark.parametrize("channels", [(), (3,), (4,)])
+@pytest.mark.parametrize("channels", [(), (2,), (3,), (4,)])
 def test_every_layout_of_a_picture_is_read(dtype, channels):
     random = np.random.default_rng(1)
     image = random.random((9, 7, *channels)) * (1 if dtype[0] == "f" else 200)
@@ -202,6 +261,15 @@ def test_every_layout_of_light_and_points_is_read():
     points = np.random.default_rng(3).random((50, 2))
     for same in layouts(points):
         assert twelvefold.measure(same) == twelvefold.measure(points)
+
+
+@pytest.mark.parametrize("dtype", ["i1", "u2", "i4", "u4", "i8", "u8"])
+def test_every_layout_of_a_mesh_is_read(dtype):
+    vertices, faces = np.array(SQUARE, "f8") / 3, np.array(HALVES, dtype)
+    expected = twelvefold.mesh_points(vertices.astype("f4"), HALVES, 50)
+    for corners, triples in zip(layouts(vertices), layouts(faces)):
+        found = twelvefold.mesh_points(corners, triples, 50)
+        assert all((a == b).all() for a, b in zip(expected, found))
 
 
 def test_inputs_are_left_alone_and_outputs_are_the_callers():

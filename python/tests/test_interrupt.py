@@ -21,6 +21,8 @@ LONG = {
     "exactly": "exactly(n=20_000_000)",
     "stipple": "stipple(np.zeros((2000, 2000)), 5_000_000)",
     "refine": "stipple(np.zeros((500, 500)), 300_000, refine=1000)",
+    "best": "stipple(np.zeros((500, 500)), 100_000, refine=1000, best=True)",
+    "mesh": "mesh_points(np.eye(3), [[0, 1, 2]], 300_000, relax=1000)",
     "environment": "environment(np.ones((64, 128, 3)), 60_000_000)",
     "measure": "measure(np.random.default_rng(0).random((65_000, 2)))",
 }

@@ -47,6 +47,8 @@ def test_types_are_checked(tmp_path):
         "points, weights = twelvefold.sample(n=10, relaxed=False, weights=True)\n"
         "points, ranks = twelvefold.Placement(seed=3).sample(n=10, ranks=True)\n"
         "directions, pdf, radiance = twelvefold.environment(np.ones((2, 4, 3)), 3, method='warp')\n"
+        "tile = twelvefold.sample(np.ones((3, 2)), 10, seamless=True)\n"
+        "where, on, weights = twelvefold.mesh_points(np.eye(3), [[0, 1, 2]], 9, density=[1, 2, 3])\n"
         "mean: float = twelvefold.measure(dots)['nearest_mean']\n"
     )
     (tmp_path / "bad.py").write_text(

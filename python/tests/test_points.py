@@ -58,6 +58,79 @@ def test_a_kept_placement_gives_what_the_functions_give():
         twelvefold.Placement((0, 0, -1, 1))
 
 
+def test_seamless_points_repeat_without_a_seam():
+    copies = [(i, j) for i in range(3) for j in range(3)]
+    for importance, wish in [
+        (None, dict(n=3000)),
+        (None, dict(n=3000, relaxed=False)),
+        (2 + np.sin(np.arange(32 * 32).reshape(32, 32) * (2 * np.pi / 32)), dict(n=3000)),
+    ]:
+        domain = (0, 0, 1, 1)
+        tile = twelvefold.sample(importance, domain=domain, seamless=True, dtype="f8", **wish)
+        nine = np.concatenate([tile + copy for copy in copies])
+        within = twelvefold.measure(nine, window=(1.2, 1.2, 0.6, 0.6))
+        # Thin about the borders of the tile in the middle.
+        for window in [(0.97, 0.5, 0.06, 2), (1.97, 0.5, 0.06, 2), (0.5, 1.97, 2, 0.06)]:
+            across = twelvefold.measure(nine, window=window)
+            assert across["nearest_mean"] > 0.9 * within["nearest_mean"]
+            assert across["points"] > 300
+    bordered = twelvefold.sample(n=3000, dtype="f8")
+    nine = np.concatenate([bordered + copy for copy in copies])
+    across = twelvefold.measure(nine, window=(0.97, 0.5, 0.06, 2))
+    assert across["nearest_least"] < 0.3
+
+
+def test_seamless_numbers_are_exact_and_placements_kept():
+    for n in [0, 1, 37, 1000]:
+        assert len(twelvefold.sample(n=n, domain=(5, 0, 3, 2), seamless=True)) == n
+    wide = np.ones((40, 60))
+    placement = twelvefold.Placement((0, 0, 60, 40), seed=3, seamless=True)
+    assert placement.seamless and not twelvefold.Placement().seamless
+    assert placement != twelvefold.Placement((0, 0, 60, 40), seed=3)
+    assert repr(placement) == "Placement((0.0, 0.0, 60.0, 40.0), seed=3, seamless=True)"
+    for same in (placement, pickle.loads(pickle.dumps(placement))):
+        assert same == placement and hash(same) == hash(placement)
+        expected = twelvefold.sample(wide, 500, seed=3, seamless=True)
+        assert (same.sample(wide, 500) == expected).all()
+        expected = twelvefold.exactly(wide, 100, seed=3, seamless=True)
+        assert all((a == b).all() for a, b in zip(same.exactly(wide, 100), expected))
+    assert not (twelvefold.exactly(wide, 100, seed=3)[0] == expected[0]).all()
+    with pytest.raises(ValueError, match="density is 10, .*seamless"):
+        twelvefold.Placement(density=10, seamless=True)
+    # As 2 to 7.
+    assert len(twelvefold.Placement((0, 0, 1, 3.5), seamless=True).sample(n=9)) == 9
+    with pytest.raises(ValueError, match="whole numbers up to 16"):
+        twelvefold.Placement((0, 0, 1, 40), seamless=True)
+
+
+def test_points_on_a_mesh_follow_area_and_density_evenly():
+    # A grid bent into a quarter of a cylinder, of unit area, and four times as dense at one end.
+    y, x = np.mgrid[:31, :31] / 30
+    angle = x * np.pi / 2
+    radius = 2 / np.pi
+    vertices = np.stack([radius * np.cos(angle), radius * np.sin(angle), y], axis=2).reshape(-1, 3)
+    corner = (np.arange(30)[:, None] * 31 + np.arange(30)).reshape(-1, 1)
+    faces = (corner + [0, 1, 32, 0, 32, 31]).reshape(-1, 3)
+    density = 1 + 3 * y.ravel()
+    for relax in [0, 10]:
+        points, on, weights = twelvefold.mesh_points(
+            vertices, faces, 2000, density=density, relax=relax
+        )
+        assert points.shape == weights.shape == (2000, 3) and on.shape == (2000,)
+        assert points.dtype == weights.dtype == np.float64 and on.dtype == np.int64
+        corners = vertices[faces[on]].astype("float32")
+        assert np.allclose((corners * weights[:, :, None]).sum(axis=1), points, atol=1e-7)
+        assert (weights >= 0).all() and np.allclose(weights.sum(axis=1), 1)
+        # ∫ 1 + 3y over the upper half of 5/2 in all.
+        assert abs((points[:, 2] > 0.5).sum() - 2000 * 1.625 / 2.5) < 15
+    flat = np.stack([np.arctan2(points[:, 1], points[:, 0]) * radius, points[:, 2]], axis=1)
+    even = twelvefold.measure(flat, importance=None, window=(0.1, 0.9, 0.8, 0.05))
+    assert even["nearest_mean"] > 0.75
+    seeds = [twelvefold.mesh_points(vertices, faces, 100, seed=seed)[0] for seed in (1, 2)]
+    assert not (seeds[0] == seeds[1]).any()
+    assert twelvefold.mesh_points(vertices, faces, 0)[0].shape == (0, 3)
+
+
 def test_an_aligned_placement_has_a_complete_level():
     aligned = twelvefold.Placement(seed=1, density=5000)
     level = aligned.sample(density=5000, relaxed=False)
@@ -124,6 +197,33 @@ def test_transparent_parts_get_no_dots():
     image = np.zeros((20, 20, 4), "uint8")
     image[:, 10:, 3] = 255
     assert twelvefold.stipple(image, 200)[:, 0].min() >= 10
+    gray = image[:, :, ::3]
+    assert (twelvefold.stipple(gray, 200) == twelvefold.stipple(image, 200)).all()
+
+
+def test_levels_and_light_change_the_tone():
+    # Encoded .5 has .214 of white's light.
+    image = np.ones((40, 40))
+    image[:, :20] = 0.5
+    image[:20, 20:] = 0
+
+    def share(**keywords):
+        dots = twelvefold.stipple(image, 3000, refine=0, **keywords)
+        return (dots[:, 0] < 20).mean()
+
+    def expected(darkness):
+        return 2 * darkness / (2 * darkness + 1)
+
+    for keywords, darkness in [
+        ({}, 0.5),
+        ({"linear": True}, 0.786),
+        ({"gamma": 2}, 1 - 0.5**0.5),
+        ({"black": 0.25}, 2 / 3),
+        ({"white": 0.75}, 1 / 3),
+        ({"white": 0.5}, 0),
+        ({"black": 0.5}, 1),
+    ]:
+        assert abs(share(**keywords) - expected(darkness)) < 0.015, keywords
 
 
 @pytest.mark.parametrize("method", ["sobol", "progressive", "warp"])

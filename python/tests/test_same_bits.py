@@ -49,35 +49,65 @@ def line(name, points, ranks):
 
 
 def golden_cases():
+    """Name, map, n, seed, domain, whether relaxed, whether seamless."""
     maps = ["ramp", "texture", "edges", "hot-spot"]
+    for name, domain in {"unit": (0, 0, 1, 1), "3-2": (-3.7, 5.1, 7.5, 5.0)}.items():
+        for relaxed in [False, True]:
+            for n in [50, 1000, 40_000]:
+                kind = "relaxed" if relaxed else "constant"
+                yield f"seamless-{kind}-{name}-{n}", None, n, 1, domain, relaxed, True
+            kind = "texture-relaxed" if relaxed else "texture"
+            yield f"seamless-{kind}-{name}", "texture", 10_000, 1, domain, relaxed, True
     for seed, n in itertools.product([1, 2], [3, 50, 1000, 40_000]):
-        yield f"constant-unit-{seed}-{n}", None, n, seed, None, False
-        yield f"constant-off-center-{seed}-{n}", None, n, seed, OFF_CENTER, False
+        yield f"constant-unit-{seed}-{n}", None, n, seed, None, False, False
+        yield f"constant-off-center-{seed}-{n}", None, n, seed, OFF_CENTER, False, False
         for name in maps:
-            yield f"{name}-{seed}-{n}", name, n, seed, None, False
-        yield f"ramp-unit-{seed}-{n}", "ramp", n, seed, (0, 0, 1, 1), False
-        yield f"texture-off-center-{seed}-{n}", "texture", n, seed, OFF_CENTER, False
-        yield f"texture-power-of-two-{seed}-{n}", "texture", n, seed, (0, 0, 2, 2), False
+            yield f"{name}-{seed}-{n}", name, n, seed, None, False, False
+        yield f"ramp-unit-{seed}-{n}", "ramp", n, seed, (0, 0, 1, 1), False, False
+        yield f"texture-off-center-{seed}-{n}", "texture", n, seed, OFF_CENTER, False, False
+        yield f"texture-power-of-two-{seed}-{n}", "texture", n, seed, (0, 0, 2, 2), False, False
     for seed in [1, 2]:
         for n in [40, 3000, 12_000, 40_000, 90_000]:
-            yield f"relaxed-constant-unit-{seed}-{n}", None, n, seed, None, True
+            yield f"relaxed-constant-unit-{seed}-{n}", None, n, seed, None, True, False
         for name in maps:
-            yield f"relaxed-{name}-{seed}", name, 20_000, seed, None, True
+            yield f"relaxed-{name}-{seed}", name, 20_000, seed, None, True, False
 
 
 @pytest.mark.parametrize("dtype", ["float32", "float64"])
 def test_points_are_those_of_the_librarys_golden_file(dtype):
     golden = set((REPOSITORY / "tests/library/golden/points.txt").read_text().splitlines())
     wrong = []
-    for name, importance, n, seed, domain, relaxed in golden_cases():
+    for name, importance, n, seed, domain, relaxed, seamless in golden_cases():
         importance = None if importance is None else golden_map(importance)
-        wish = dict(seed=seed, domain=domain, relaxed=relaxed, dtype=dtype)
+        wish = dict(seed=seed, domain=domain, relaxed=relaxed, seamless=seamless, dtype=dtype)
         points, ranks = twelvefold.sample(importance, n, ranks=True, **wish)
         if line(name, points, ranks) not in golden:
             wrong.append(name)
         # The fast way, without ranks.
         assert (twelvefold.sample(importance, n, **wish) == points).all()
+        if seamless:
+            kept = twelvefold.Placement(domain, seed, seamless=True)
+            kept = kept.sample(importance, n, relaxed=relaxed, dtype=dtype)
+            assert (kept == points).all()
     assert not wrong
+
+
+def test_points_on_meshes_are_those_of_the_librarys_golden_file():
+    golden = (REPOSITORY / "tests/library/golden/points.txt").read_text().splitlines()
+    y, x = np.mgrid[:10, :13]
+    vertices = np.stack([x, y, (x * x + 3 * y) % 7 / 4], axis=2).reshape(-1, 3)
+    corner = (13 * y + x)[:9, :12].reshape(-1, 1)
+    faces = (corner + [0, 1, 14, 0, 14, 13]).reshape(-1, 3)
+    columns = np.dtype([("at", "<f8", 3), ("face", "<u4"), ("weights", "<f8", 3)])
+    for seed, steps in itertools.product([1, 2], [0, 30]):
+        for name, density in [("constant", None), ("density", (x * y % 5).ravel())]:
+            made = twelvefold.mesh_points(
+                vertices, faces, 1000, density=density, relax=steps, seed=seed
+            )
+            rows = np.empty(1000, columns)
+            rows["at"], rows["face"], rows["weights"] = made
+            hashed = hashlib.sha256(rows.tobytes()).hexdigest()[:16]
+            assert f"mesh-{name}-{seed}-relaxed-{steps} f64 1000 {hashed}" in golden
 
 
 def digest(array):
@@ -91,6 +121,8 @@ def test_dots_and_directions_are_those_of_this_version(camera, esplanade):
         "raw": digest(twelvefold.stipple(camera, 3000, seed=5, refine=0)),
         "exact": digest(twelvefold.stipple(camera, 1000, exact=True)),
         "inverted": digest(twelvefold.stipple(camera, 1000, invert=True)),
+        "linear": digest(twelvefold.stipple(camera, 1000, linear=True, white=230, gamma=1.3)),
+        "best": digest(twelvefold.stipple(camera, 1000, best=True)),
     }
     for method in ["sobol", "progressive", "warp"]:
         directions, _, _ = twelvefold.environment(esplanade, 100, method=method, negative="zero")
@@ -104,6 +136,8 @@ GOLDEN = {
     "raw": "710512d40617a16a",
     "exact": "daa8d5c694602445",
     "inverted": "b693bbc156ea1a7e",
+    "linear": "2c7e630f8d905b64",
+    "best": "0a66f7e363cf5be7",
     "sobol": "e6d3143a33759cc0",
     "progressive": "81d4fd6432026e42",
     "warp": "f83e52963d2be4ba",
@@ -114,7 +148,7 @@ def png(array):
     """A PNG file of (height, width[, channels]) of uint8 or uint16."""
     depth = 8 * array.itemsize
     height, width = array.shape[:2]
-    color = {1: 0, 3: 2, 4: 6}[array.reshape(height, width, -1).shape[2]]
+    color = {1: 0, 2: 4, 3: 2, 4: 6}[array.reshape(height, width, -1).shape[2]]
     rows = array.astype(array.dtype.newbyteorder(">")).reshape(height, -1)
     data = b"".join(b"\0" + row.tobytes() for row in rows)
 
@@ -136,12 +170,13 @@ def photographs(camera):
         "gray": camera,
         "gray 16": camera.astype("uint16") * 257 // 2 + 1000,
         "rgb": rgb,
+        "gray alpha": np.dstack([camera, alpha]),
         "rgba": np.dstack([rgb, alpha]),
         "rgb 16": rgb.astype("uint16") * 200,
     }
 
 
-@pytest.mark.parametrize("name", ["gray", "gray 16", "rgb", "rgba", "rgb 16"])
+@pytest.mark.parametrize("name", ["gray", "gray alpha", "gray 16", "rgb", "rgba", "rgb 16"])
 @pytest.mark.parametrize(
     "keywords, options",
     [
@@ -149,6 +184,14 @@ def photographs(camera):
         (dict(refine=0, seed=3), ["-n", 2000, "--refine", 0, "--seed", 3]),
         (dict(refine=2, exact=True), ["--exact", 2000, "--refine", 2]),
         (dict(invert=True, refine=1), ["-n", 2000, "--invert", "--refine", 1]),
+        (dict(linear=True, refine=0), ["-n", 2000, "--linear", "--refine", 0]),
+        (dict(gamma=1.7, refine=0), ["-n", 2000, "--gamma", 1.7, "--refine", 0]),
+        (dict(linear=True, gamma=0.6, refine=1), "-n 2000 --linear --gamma 0.6 --refine 1".split()),
+        (
+            dict(black=20, white=230, gamma=1.2, linear=True, invert=True, refine=0),
+            "-n 2000 --black 20 --white 230 --gamma 1.2 --linear --invert --refine 0".split(),
+        ),
+        (dict(white=200, best=True, refine=1), "-n 2000 --white 200 --best --refine 1".split()),
     ],
 )
 def test_dots_are_the_programs(program, tmp_path, photographs, name, keywords, options):
@@ -156,7 +199,10 @@ def test_dots_are_the_programs(program, tmp_path, photographs, name, keywords, o
     path = tmp_path / "photo.png"
     path.write_bytes(png(photograph))
     dots = np.load(io.BytesIO(program("stipple", path, "-o", "-", "--format", "npy", "-q", *options)))
-    ours = twelvefold.stipple(photograph, 2000, **keywords)
+    # The program's levels are of 255 whatever the depth.
+    scale = np.iinfo(photograph.dtype).max // 255
+    levels = {level: scale * keywords[level] for level in ("black", "white") if level in keywords}
+    ours = twelvefold.stipple(photograph, 2000, **{**keywords, **levels})
     assert dots.dtype == ours.dtype == np.float32
     assert dots.tobytes() == ours.tobytes()
 

@@ -10,6 +10,7 @@ Rust library and the program ``twelvefold``.
 `exactly`          n points, every beginning of which is a good set, with weights
 `Placement`        a domain and a seed, kept across calls
 `environment`      directions towards the light of an environment map
+`mesh_points`      exactly n points on a triangle mesh
 `measure`          how even points are
 =================  ==============================================================
 
@@ -27,7 +28,7 @@ Ctrl-C ends it within a second.
 (2, dtype('float32'))
 """
 
-from ._api import Placement, environment, exactly, measure, sample, stipple
+from ._api import Placement, environment, exactly, measure, mesh_points, sample, stipple
 from ._native import __version__
 
 __all__ = [
@@ -35,12 +36,13 @@ __all__ = [
     "environment",
     "exactly",
     "measure",
+    "mesh_points",
     "sample",
     "stipple",
     "__version__",
 ]
 
 # Where everybody finds them, for `help()` and error messages.
-for _public in (Placement, environment, exactly, measure, sample, stipple):
+for _public in (Placement, environment, exactly, measure, mesh_points, sample, stipple):
     _public.__module__ = __name__
 del _public

@@ -8,6 +8,7 @@ __all__ = [
     "environment",
     "exactly",
     "measure",
+    "mesh_points",
     "sample",
     "stipple",
     "__version__",
@@ -25,9 +26,14 @@ def stipple(
     n: SupportsIndex,
     *,
     refine: SupportsIndex = 10,
+    best: bool = False,
     exact: bool = False,
     seed: SupportsIndex = 0,
     invert: bool = False,
+    linear: bool = False,
+    black: float = 0,
+    white: float | None = None,
+    gamma: float = 1.0,
 ) -> NDArray[np.float32]: ...
 @overload
 def sample(
@@ -38,6 +44,7 @@ def sample(
     relaxed: bool = True,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
     dtype: DTypeLike | None = None,
     weights: Literal[False] = False,
     ranks: Literal[False] = False,
@@ -52,6 +59,7 @@ def sample(
     relaxed: bool = True,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
     dtype: DTypeLike | None = None,
     weights: Literal[True],
     ranks: Literal[False] = False,
@@ -66,6 +74,7 @@ def sample(
     relaxed: bool = True,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
     dtype: DTypeLike | None = None,
     weights: Literal[False] = False,
     ranks: Literal[True],
@@ -80,6 +89,7 @@ def sample(
     relaxed: bool = True,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
     dtype: DTypeLike | None = None,
     weights: Literal[True],
     ranks: Literal[True],
@@ -94,6 +104,7 @@ def sample(
     relaxed: bool = True,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
     dtype: DTypeLike | None = None,
     weights: bool = False,
     ranks: bool = False,
@@ -105,6 +116,7 @@ def exactly(
     *,
     domain: _Rectangle | None = None,
     seed: SupportsIndex = 0,
+    seamless: bool = False,
 ) -> tuple[NDArray[np.float64], _Weights]: ...
 def environment(
     map: ArrayLike,
@@ -119,6 +131,15 @@ def environment(
     infinite: Literal["reject", "zero"] | float = "reject",
     nan: Literal["reject", "zero"] = "reject",
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float32]]: ...
+def mesh_points(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    n: SupportsIndex,
+    *,
+    density: ArrayLike | None = None,
+    relax: SupportsIndex = 10,
+    seed: SupportsIndex = 0,
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]: ...
 def measure(
     points: ArrayLike,
     *,
@@ -133,6 +154,7 @@ class Placement:
         seed: SupportsIndex = 0,
         *,
         density: float | None = None,
+        seamless: bool = False,
     ) -> None: ...
     @property
     def domain(self) -> _Rectangle: ...
@@ -140,6 +162,8 @@ class Placement:
     def seed(self) -> int: ...
     @property
     def density(self) -> float | None: ...
+    @property
+    def seamless(self) -> bool: ...
     @overload
     def sample(
         self,

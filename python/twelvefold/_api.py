@@ -5,21 +5,37 @@ import numpy as np
 from . import _native
 
 
-def stipple(image, n, *, refine=10, exact=False, seed=0, invert=False):
+def stipple(
+    image,
+    n,
+    *,
+    refine=10,
+    best=False,
+    exact=False,
+    seed=0,
+    invert=False,
+    linear=False,
+    black=0,
+    white=None,
+    gamma=1.0,
+):
     """Dots of one size that draw a picture, dense where it is dark.
 
     Parameters
     ----------
-    image : array (height, width), (height, width, 3) or (height, width, 4)
+    image : array (height, width), or (height, width, channels) of 2, 3 or 4
         Brightness, gray or red, green and blue, and perhaps coverage (alpha): uint8 from 0 to 255,
         uint16 from 0 to 65535, floats from 0 to 1, or bool. Numbers are followed as they are: those of a
         photograph's file look right, and so does what ``numpy.asarray`` makes of a Pillow image of mode
-        L, RGB or RGBA. Black and opaque gets the most dots, white and transparent none.
+        L, LA, RGB or RGBA. Black and opaque gets the most dots, white and transparent none.
     n : int
         How many dots. About as many are made, within 1 % at 20,000, unless `exact`.
     refine : int, 0 to 1000
         How often the dots are moved to draw the picture better; 10 are enough for most, and take some
         3 microseconds a dot. 0 leaves them where the tiling puts them.
+    best : bool
+        Move the refined dots once more, each to the center of a cell that holds as much of the picture as
+        every other: the best there is, in about four times the time.
     exact : bool
         Exactly n dots. With ``refine=0`` they come in an order of which each beginning is itself a good
         stippling.
@@ -27,6 +43,16 @@ def stipple(image, n, *, refine=10, exact=False, seed=0, invert=False):
         Chooses which of many equally good arrangements is made.
     invert : bool
         Put dots where the picture is light, to be drawn white on black.
+    linear : bool
+        Follow light instead of the numbers, which are taken as encoded in sRGB: averaged over an area,
+        the dots then reflect as much light as the picture. Numbers that are light already are followed
+        without it.
+    black, white : float
+        What counts as black and as white, in the image's own numbers: ``white=250`` for paper of uint8
+        that was scanned a little gray, 0.98 for floats. By default 0 and the largest.
+    gamma : float
+        Lighten (above 1) or darken the middle: brightness from 0 to 1, after `black` and `white`, is
+        raised to 1/gamma.
 
     Returns
     -------
@@ -43,7 +69,7 @@ def stipple(image, n, *, refine=10, exact=False, seed=0, invert=False):
     Notes
     -----
     The same dots as ``twelvefold stipple photo.png -o dots.npy -n N`` (or ``--exact N``) writes for a
-    file with these pixels. Memory: some 100 bytes a dot and 20 a pixel while dots are refined.
+    file with these pixels, its options as the ones here; its levels are of 255. Memory: some 100 bytes a dot and 20 a pixel while dots are refined.
 
     Examples
     --------
@@ -55,7 +81,9 @@ def stipple(image, n, *, refine=10, exact=False, seed=0, invert=False):
     >>> bool((dots[:, 0] < 100).mean() > 0.7)
     True
     """
-    return _native.stipple(image, n, refine, exact, seed, invert)
+    return _native.stipple(
+        image, n, refine, best, exact, seed, invert, linear, black, white, gamma
+    )
 
 
 def sample(
@@ -66,6 +94,7 @@ def sample(
     relaxed=True,
     domain=None,
     seed=0,
+    seamless=False,
     dtype=None,
     weights=False,
     ranks=False,
@@ -90,6 +119,11 @@ def sample(
         the image's pixels, ``(0, 0, width, height)``, or the unit square.
     seed : int, 0 to 2**64 - 1
         Chooses which of many equally good sets is made.
+    seamless : bool
+        Points without a border: opposite sides of the domain are one, and copies of the points side by
+        side in rows and columns show no seam, if the importance shows none. The domain's sides must be as
+        k to l, whole numbers up to 16 (1:1, 3:2, 16:9 …). Uniform density gets exactly n points. Where
+        density is below that of 780·k·l points, they are not relaxed: choose small k and l.
     dtype : 'float32' or 'float64'
         Of the positions. By default float32; with weights, float64.
     weights : bool
@@ -125,6 +159,14 @@ def sample(
     >>> bool(abs((points[:, 0] * points[:, 1] * weights).sum() - 0.25) < 0.01)
     True
 
+    A tile that repeats, 3 times in each direction, and how near points come to each other over its borders,
+    in the hexagonal lattice's distances:
+
+    >>> tile = twelvefold.sample(n=780, seamless=True)
+    >>> nine = np.concatenate([tile + [i, j] for i in range(3) for j in range(3)])
+    >>> len(tile), twelvefold.measure(nine, window=(0.9, 0.9, 1.2, 1.2))["nearest_least"] > 0.95
+    (780, True)
+
     In four processes:
 
     >>> parts = [twelvefold.sample(n=1000, part=(i, 4)) for i in range(4)]
@@ -133,16 +175,16 @@ def sample(
     """
     double = _is_double(dtype, weights)
     return _native.sample(
-        None, domain, seed, importance, n, density, relaxed, double, weights, ranks, part
+        None, domain, seed, seamless, importance, n, density, relaxed, double, weights, ranks, part
     )
 
 
-def exactly(importance=None, n=None, *, domain=None, seed=0):
+def exactly(importance=None, n=None, *, domain=None, seed=0, seamless=False):
     """Exactly ``n`` points in progressive order: every beginning of the list is itself a good set.
 
     Parameters
     ----------
-    importance, domain, seed
+    importance, domain, seed, seamless
         As for `sample`.
     n : int
         How many.
@@ -163,7 +205,7 @@ def exactly(importance=None, n=None, *, domain=None, seed=0):
     >>> bool((twelvefold.exactly(n=50)[0] == points[:50]).all())
     True
     """
-    return _native.exactly(None, domain, seed, importance, _needed(n))
+    return _native.exactly(None, domain, seed, seamless, importance, _needed(n))
 
 
 class Placement:
@@ -182,6 +224,8 @@ class Placement:
     density : float, optional
         Of which the points, in a unit of area, are to be a complete level of the tiling: far more even,
         with ``relaxed=False``, than at other densities.
+    seamless : bool
+        The domain has no border: as for `sample`. Not with `density`.
 
     Examples
     --------
@@ -195,9 +239,9 @@ class Placement:
 
     __slots__ = ("_arguments", "_native")
 
-    def __init__(self, domain=(0.0, 0.0, 1.0, 1.0), seed=0, *, density=None):
-        self._native = _native.Placement(domain, seed, density)
-        self._arguments = (self._native.domain, int(seed), density)
+    def __init__(self, domain=(0.0, 0.0, 1.0, 1.0), seed=0, *, density=None, seamless=False):
+        self._native = _native.Placement(domain, seed, density, seamless)
+        self._arguments = (self._native.domain, int(seed), density, bool(seamless))
 
     @property
     def domain(self):
@@ -214,6 +258,11 @@ class Placement:
         """Points in a unit of area of a complete level, if one was asked for."""
         return self._arguments[2]
 
+    @property
+    def seamless(self):
+        """Whether opposite sides of the domain are one."""
+        return self._arguments[3]
+
     def sample(
         self,
         importance=None,
@@ -229,16 +278,17 @@ class Placement:
         """About ``n`` points of this placement: as the function `sample`."""
         double = _is_double(dtype, weights)
         return _native.sample(
-            self._native, None, 0, importance, n, density, relaxed, double, weights, ranks, part
+            self._native, None, 0, False, importance, n, density, relaxed, double, weights, ranks, part
         )
 
     def exactly(self, importance=None, n=None):
         """Exactly ``n`` points of this placement and their weights: as the function `exactly`."""
-        return _native.exactly(self._native, None, 0, importance, _needed(n))
+        return _native.exactly(self._native, None, 0, False, importance, _needed(n))
 
     def __repr__(self):
         density = "" if self.density is None else f", density={self.density}"
-        return f"Placement({self.domain}, seed={self.seed}{density})"
+        seamless = ", seamless=True" if self.seamless else ""
+        return f"Placement({self.domain}, seed={self.seed}{density}{seamless})"
 
     def __eq__(self, other):
         return isinstance(other, Placement) and self._arguments == other._arguments
@@ -250,8 +300,8 @@ class Placement:
         return _remade, self._arguments
 
 
-def _remade(domain, seed, density):
-    return Placement(domain, seed, density=density)
+def _remade(domain, seed, density, seamless):
+    return Placement(domain, seed, density=density, seamless=seamless)
 
 
 def environment(
@@ -325,6 +375,58 @@ def environment(
     return _native.environment(
         map, n, method, frame, rotate, seed, filter, negative, infinite, nan
     )
+
+
+def mesh_points(vertices, faces, n, *, density=None, relax=10, seed=0):
+    """Exactly ``n`` points on a triangle mesh, even along its surface.
+
+    Parameters
+    ----------
+    vertices : array (vertices, 3)
+        Positions in any unit, read as float32: move a mesh that lies far from the origin near it before.
+        Vertices at the same place count as one where points go from face to face.
+    faces : array (faces, 3) of integers
+        The rows of `vertices` at each triangle's corners. Triangles without area get no points.
+    n : int
+        How many.
+    density : array (vertices,), optional
+        How many points are wanted at each vertex, in any unit: finite and not negative, linear over each
+        face. Without it, all of the surface is equally dense.
+    relax : int, 0 to 1000
+        How often the points push each other along the surface, about half a microsecond a point each.
+        10 are enough for most, 30 for the rest. After 0 points are an unbiased sample, as random ones
+        are, but with the share of n that is due in every face, to within a point.
+    seed : int, 0 to 2**64 - 1
+        Chooses which of many equally good sets is made.
+
+    Returns
+    -------
+    points : array (n, 3) of float64
+        Positions, in the unit of the vertices.
+    faces : array (n,) of int64
+        The row of `faces` on which each point lies.
+    barycentrics : array (n, 3) of float64
+        Weights of that face's corners, none negative, 1 in all:
+        ``(normals[faces[on]] * weights[:, :, None]).sum(axis=1)`` interpolates what is given at vertices.
+
+    Raises
+    ------
+    ValueError, TypeError
+        For a face without its vertex, a coordinate or density that is no number, a mesh without area:
+        the first is named by its row.
+
+    Examples
+    --------
+    >>> import numpy as np, twelvefold
+    >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> faces = np.array([[0, 1, 2], [0, 2, 3]])
+    >>> points, on, weights = twelvefold.mesh_points(square, faces, 500)
+    >>> points.shape, on.shape, weights.shape
+    ((500, 3), (500,), (500, 3))
+    >>> bool(np.allclose((square[faces[on]] * weights[:, :, None]).sum(axis=1), points))
+    True
+    """
+    return _native.mesh_points(vertices, faces, n, density, relax, seed)
 
 
 def measure(points, *, window=None, importance=None):

@@ -11,9 +11,10 @@ exactly: _Function
 stipple: _Function
 environment: _Function
 measure: _Function
+mesh_points: _Function
 
 @final
 class Placement:
-    def __new__(cls, domain: Any, seed: Any, density: Any) -> Placement: ...
+    def __new__(cls, domain: Any, seed: Any, density: Any, seamless: Any) -> Placement: ...
     @property
     def domain(self) -> tuple[float, float, float, float]: ...

@@ -8,20 +8,38 @@ use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
 /// An [`ImageMap`] read bilinearly: each pixel's value holds at its center, and between four centers the
-/// importance is interpolated. Beyond the outermost centers the border pixels continue.
+/// importance is interpolated. Beyond the outermost centers the border pixels continue, or, where it is
+/// [`seamless`](Self::seamless), those of the opposite border follow.
 ///
 /// Smooth where the piecewise-constant map has steps, at about twice the cost of a value; a sharp
 /// detail is spread over two pixels. The integral over the map's domain is the same, Σ pixels.
 #[derive(Clone, Debug)]
 pub struct BilinearMap {
     map: ImageMap,
+    wraps: bool,
 }
 
 impl BilinearMap {
     /// The map's pixels, interpolated over the map's domain.
     #[must_use]
     pub const fn new(map: ImageMap) -> Self {
-        Self { map }
+        Self { map, wraps: false }
+    }
+
+    /// The same without a border, for a [`seamless`](crate::Placement::seamless) placement of the map's
+    /// domain: interpolated between the last pixel of a row or column and its first as well.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use twelvefold::{BilinearMap, ImageMap, Importance as _, InvalidPixels, Pixels};
+    /// let map = ImageMap::new(Pixels::new(4, 1, vec![1.0, 2.0, 2.0, 5.0], InvalidPixels::Reject)?)?;
+    /// let map = BilinearMap::seamless(map);
+    /// assert_eq!(map.value(DVec2::new(0.0, 0.5)), 3.0); // between 5 and 1
+    /// # Ok::<(), twelvefold::MapError>(())
+    /// ```
+    #[must_use]
+    pub const fn seamless(map: ImageMap) -> Self {
+        Self { map, wraps: true }
     }
 
     /// The pixels.
@@ -46,7 +64,22 @@ impl BilinearMap {
     fn grid(&self) -> Grid {
         let (width, height) = self.map.size();
         let min = self.map.domain().min();
-        Grid { width, height, min, texel: 2.0 * self.half_texel() }
+        Grid { width, height, min, texel: 2.0 * self.half_texel(), wraps: self.wraps }
+    }
+
+    /// The discs whose pixels a region across the border is interpolated from, if it goes on there.
+    fn images(&self, widened: &Disc) -> Option<impl Iterator<Item = Disc>> {
+        if !self.wraps {
+            return None;
+        }
+        let domain = self.map.domain();
+        let (low, high, reach) = (domain.min(), domain.max(), widened.radius);
+        let center = widened.center;
+        if (center - reach).cmpge(low).all() && (center + reach).cmple(high).all() {
+            return None;
+        }
+        // What lies outside is read at the nearest place inside, which is no farther from that of the center.
+        Some(domain.images(&Disc { center: center.clamp(low, high), ..*widened }))
     }
 }
 
@@ -75,12 +108,22 @@ impl Importance for BilinearMap {
     /// The largest pixel whose center is less than a pixel from the region: interpolation never
     /// exceeds the pixels it lies between.
     fn upper_bound(&self, region: &Disc) -> f64 {
-        self.map.upper_bound(&self.widened(region))
+        let widened = self.widened(region);
+        match self.images(&widened) {
+            None => self.map.upper_bound(&widened),
+            Some(images) => images.map(|disc| self.map.upper_bound(&disc)).fold(0.0, f64::max),
+        }
     }
 
     /// The smallest such pixel.
     fn lower_bound(&self, region: &Disc) -> f64 {
-        self.map.lower_bound(&self.widened(region))
+        let widened = self.widened(region);
+        match self.images(&widened) {
+            None => self.map.lower_bound(&widened),
+            Some(images) => {
+                images.map(|disc| self.map.lower_bound(&disc)).fold(f64::INFINITY, f64::min)
+            }
+        }
     }
 
     /// Known over the map's own domain only: there each pixel's share is one pixel's area.
@@ -122,10 +165,12 @@ mod tests {
             seed: u64,
             (width, height) in (1usize..12, 1usize..12),
             (x, y, radius) in (-0.2..1.2f64, -0.2..1.2f64, 0.0..0.6f64),
+            wraps: bool,
         ) {
             let domain =
                 Domain::new(DVec2::new(-3.0, 1e4), DVec2::new(5.0, 0.7)).unwrap();
-            let map = BilinearMap::new(random(width, height, seed).map.over(domain));
+            let map = random(width, height, seed).map.over(domain);
+            let map = if wraps { BilinearMap::seamless(map) } else { BilinearMap::new(map) };
             let region = Disc { center: domain.min() + domain.size() * DVec2::new(x, y), radius };
             let bounds = map.lower_bound(&region)..=map.upper_bound(&region);
             let mut random = SplitMix64::new(seed);
@@ -148,8 +193,43 @@ mod tests {
     }
 
     #[test]
+    fn a_map_without_border_is_one_that_is_shifted() {
+        // The same pixels begun elsewhere: the same importance, elsewhere.
+        for (width, height) in [(5, 4), (1, 3), (2, 1)] {
+            let bordered = random(width, height, 7);
+            let [begin_x, begin_y] = [width / 2, height / 2];
+            let pixels = bordered.map.pixels();
+            let shifted: Vec<f32> = (0..width * height)
+                .map(|i| {
+                    let (x, y) = (i % width + begin_x, i / width + begin_y);
+                    pixels[y % height * width + x % width]
+                })
+                .collect();
+            let shifted = Pixels::new(width, height, shifted, InvalidPixels::Reject)
+                .and_then(ImageMap::new)
+                .unwrap();
+            let [map, shifted] = [bordered.map.clone(), shifted].map(BilinearMap::seamless);
+            let size = DVec2::new(width as f64, height as f64);
+            for i in 0..400 {
+                let at = DVec2::new(f64::from(i % 20), f64::from(i / 20)) / 20.0 * size;
+                let there = (at + DVec2::new(begin_x as f64, begin_y as f64)).rem_euclid(size);
+                let (found, expected) = (shifted.value(at), map.value(there));
+                assert!((found - expected).abs() < 1e-12, "{width} {height} {at}");
+            }
+            // Away from the border, as with one.
+            let inside = 0.5 * size;
+            assert_eq!(map.value(inside), bordered.value(inside));
+        }
+    }
+
+    #[test]
     fn the_integral_is_that_of_the_values() {
-        let map = random(5, 4, 3);
+        for map in [random(5, 4, 3), BilinearMap::seamless(random(5, 4, 3).map)] {
+            check_integral(&map);
+        }
+    }
+
+    fn check_integral(map: &BilinearMap) {
         // The midpoint rule is exact on each quarter pixel: the function is bilinear there.
         let (mut sum, n) = (0.0, 2usize);
         for j in 0..4 * n {

@@ -125,7 +125,7 @@ impl StippleMap {
     /// Where the planes' pixels lie.
     fn grid(&self) -> Grid {
         let (width, height) = self.acceptance.map().size();
-        Grid { width, height, min: DVec2::ZERO, texel: DVec2::ONE }
+        Grid { width, height, min: DVec2::ZERO, texel: DVec2::ONE, wraps: false }
     }
 
     /// The importance averaged at the scale of the points' spacing.

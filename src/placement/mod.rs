@@ -121,7 +121,8 @@ impl Placement<'static> {
     /// - Distances are those of the torus: at 56·k·l, 780·k·l, 10,864·k·l … points the set is a complete
     ///   level, as in [`aligned`](Self::aligned).
     /// - Relaxed points cross the border. One that would enter a place of importance 0 there stays at its
-    ///   center.
+    ///   center. Where density is at most that of 780·k·l points, all stay there: the tiles that they would be
+    ///   told apart by are above the roots.
     /// - Only position and quarter turns are random: rows of points at 15° and every 30° from there are as
     ///   likely in any place, so that estimates are unbiased, but no other direction gets its turn.
     ///
@@ -346,6 +347,25 @@ impl<'t> Placement<'t> {
             None => *self.frontier.get(i)?,
             Some(torus) => torus.node(&self.tables, &self.numbering, i),
         }
+    }
+
+    /// The first of them from tile `i` on, and which it is; of a seamless domain, those whose ranks are not
+    /// below `limit` are passed over.
+    pub(crate) fn frontier_below(&self, i: usize, limit: u64) -> Option<(usize, Node)> {
+        match &self.torus {
+            None => Some((i, (*self.frontier.get(i)?)?)),
+            Some(torus) => torus.node_below(&self.tables, &self.numbering, i, limit),
+        }
+    }
+
+    /// Whether a seamless domain has roots that do not reach all around it.
+    pub(crate) fn has_many_roots(&self) -> bool {
+        self.torus.as_ref().is_some_and(Torus::has_many_cells)
+    }
+
+    /// The root of tile `i` of the frontier of a seamless domain, with its center in the domain.
+    pub(crate) fn root_of(&self, i: usize) -> Option<Node> {
+        self.torus.as_ref().map(|torus| torus.root_of(i))
     }
 
     /// The root of a tile of the frontier, and the way from it, which always is.

@@ -19,8 +19,8 @@ use crate::tree::node::Node;
 /// The level of the roots: their children are the frontier.
 pub(super) const ROOT_LEVEL: u8 = 3;
 
-/// The most cells along a side: the rectangles of screens and sheets are within 16 : 9, whose 576 roots cost
-/// every walk half a millisecond.
+/// The most cells along a side: the rectangles of screens and sheets are within 16 : 9, whose 576 roots with all
+/// their children cost a walk that needs them half a millisecond.
 pub(super) const MAX_CELLS: u32 = 16;
 
 /// How far, relatively, the ratio of the sides may be from k : l: sides that once were `f32` are this near.
@@ -133,6 +133,38 @@ impl Torus {
         }
         let node = self.root(place).child(tables, numbering, i % MAX_CHILDREN)?;
         Some(Node { center: self.home(node.center, 1), ..node })
+    }
+
+    /// Whether there is more than one.
+    pub(super) fn has_many_cells(&self) -> bool {
+        self.cells != [1, 1]
+    }
+
+    /// The root of tile `i` of the frontier, with its center in the domain.
+    pub(super) fn root_of(&self, i: usize) -> Node {
+        let root = self.root((i / MAX_CHILDREN) as u64);
+        Node { center: self.home(root.center, 0), ..root }
+    }
+
+    /// The first tile of the frontier, from tile `i` on, whose rank is below `limit`, and which it is: what
+    /// few points are made of is found without looking at all the others.
+    pub(super) fn node_below(
+        &self,
+        tables: &Tables<'_>,
+        numbering: &Numbering,
+        i: usize,
+        limit: u64,
+    ) -> Option<(usize, Node)> {
+        let roots = Self::roots(self.cells);
+        let (place, digit) = ((i / MAX_CHILDREN) as u64, (i % MAX_CHILDREN) as u64);
+        // Ranks rise with digits: where this one's is too high, so are those of the digits after it.
+        let i = if digit * roots + place < limit { i } else { i - i % MAX_CHILDREN + MAX_CHILDREN };
+        // And with places, of the digit 0.
+        let place = (i / MAX_CHILDREN) as u64;
+        if place >= limit {
+            return None;
+        }
+        Some((i, self.node(tables, numbering, i)?))
     }
 
     /// The root of a tile of the frontier, and the way from it.

@@ -6,6 +6,7 @@ pub(crate) mod chunk;
 pub(crate) mod context;
 mod count;
 pub(crate) mod displaced;
+mod frontier;
 pub(crate) mod mode;
 mod open;
 mod relaxed;

@@ -31,30 +31,16 @@ impl Seam {
         Self { domain }
     }
 
-    /// The images of a disc that touch the domain: at least one of a disc whose center is less than a
-    /// side outside.
-    fn images(&self, region: &Disc) -> impl Iterator<Item = Disc> {
-        let (low, high, size) = (self.domain.min(), self.domain.max(), self.domain.size());
-        // A little more, so that rounding loses none.
-        let radius = region.radius + 1e-9 * size.max_element();
-        let Disc { center, radius: own } = *region;
-        let shifts = (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(x.into(), y.into())));
-        shifts.map(move |shift| center + shift * size).filter_map(move |center| {
-            let touches = center.clamp(low, high).distance_squared(center) <= radius * radius;
-            touches.then_some(Disc { center, radius: own })
-        })
-    }
-
     /// Whether an image of the disc may hold a point of the clip.
     #[cold]
     pub(crate) fn touches(&self, clip: &Clip, region: &Disc) -> bool {
-        self.images(region).any(|image| clip.touches(&image))
+        self.domain.images(region).any(|image| clip.touches(&image))
     }
 
     /// An upper bound of the importance in the disc, wrapped.
     #[cold]
     pub(crate) fn upper_bound(&self, importance: &impl Importance, region: &Disc) -> f64 {
-        let bounds = self.images(region).map(|image| importance.upper_bound(&image));
+        let bounds = self.domain.images(region).map(|image| importance.upper_bound(&image));
         // NaN stays, to be reported.
         bounds.fold(f64::NEG_INFINITY, |most, bound| if most >= bound { most } else { bound })
     }

@@ -22,6 +22,7 @@ use super::chunk::Chunk;
 use super::context::Context;
 use super::count::{count_below, count_below_at_most, levels_below, work_below};
 use super::displaced::Displaced;
+use super::frontier::Frontier;
 use super::mode::Mode;
 use super::open::OpenTile;
 use super::seam::Seam;
@@ -66,8 +67,7 @@ const KIN_LEVELS: u8 = 3;
 pub(crate) struct Traversal<K> {
     open: [OpenTile<K>; MAX_OPEN],
     depth: usize,
-    /// The number of frontier tiles begun.
-    frontier: usize,
+    frontier: Frontier,
     /// How many ranks the bound of the frontier tile begun last admits, while only that tile's center
     /// has been tested.
     begun: Option<u64>,
@@ -87,7 +87,7 @@ impl<K: Mode> Traversal<K> {
         Self {
             open: [OpenTile::CLOSED; MAX_OPEN],
             depth: 0,
-            frontier: 0,
+            frontier: Frontier::new(sampling),
             begun: None,
             clip: sampling.clip(),
             shard,
@@ -156,10 +156,9 @@ impl<K: Mode> Traversal<K> {
             } else if let Some(limit) = self.begun.take() {
                 limit
             } else {
-                let Some(node) = sampling.placement().frontier_node(self.frontier) else {
+                let Some(node) = self.frontier.next::<K>(sampling, &self.clip) else {
                     return Ok(false);
                 };
-                self.frontier += 1;
                 self.begun = self.enter_frontier(sampling, &node)?;
                 if self.begun.is_some() {
                     (self.batch.start, self.batch.end) = (0, 1);

@@ -195,6 +195,10 @@ fn relaxed_points_are_even_over_edges_seams_and_small_triangles() {
         let mut points = mesh.points(500, 3).unwrap();
         mesh.relax(&mut points, 20).unwrap();
         is_on(&mesh, &triangles, &points);
+        let mut in_runs = mesh.points(500, 3).unwrap();
+        mesh.relax(&mut in_runs, 13).unwrap();
+        mesh.relax(&mut in_runs, 7).unwrap();
+        assert_eq!(in_runs, points);
         let distances = nearest(&mesh, &points);
         let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = distances.iter().sum::<f64>() / 500.0;

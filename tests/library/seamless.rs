@@ -4,8 +4,8 @@
 use glam::{DVec2, Vec2};
 use twelvefold::tiling::{Cyclotomic, Tile, TileType, snub_square};
 use twelvefold::{
-    Amount, Constant, Domain, Function, ImageMap, Importance, InvalidPixels, Limits, Pixels,
-    Placement, Sampling, SamplingError, StippleMap, Tables, estimate,
+    Amount, BilinearMap, Constant, Domain, Function, ImageMap, Importance, InvalidPixels, Limits,
+    Pixels, Placement, Sampling, SamplingError, StippleMap, Tables, estimate,
 };
 
 use crate::common::{every_depth, map, noise, points};
@@ -320,6 +320,65 @@ fn importance_wraps() {
     let expected = 800.0 * border / all * seeds as f64;
     for count in [fixed, relaxed] {
         assert!((count as f64 / expected - 1.0).abs() < 0.01, "{count} {expected}");
+    }
+}
+
+#[test]
+fn an_interpolated_map_wraps_too() {
+    // Light in the first column only: interpolated, half a pixel of the last one has some.
+    let columns = map(16, 16, |x, _| if x == 0 { 1.0 } else { 0.0 });
+    let across = |map: &BilinearMap| {
+        let placement = Placement::seamless(map.map().domain(), 4).unwrap();
+        let sampling = Sampling::new(&placement, map, Amount::Points(2000.0)).unwrap();
+        check_cuts(sampling);
+        check_cuts(sampling.relaxed().unwrap());
+        let found = points(&sampling).unwrap();
+        assert!(found.iter().all(|(_, at)| map.value(*at) > 0.0));
+        found.iter().filter(|(_, at)| at.x > 15.0).count()
+    };
+    let side = |map: ImageMap| map.over(Domain::new(DVec2::ZERO, DVec2::splat(16.0)).unwrap());
+    assert_eq!(across(&BilinearMap::new(side(columns.clone()))), 0);
+    // An eighth: half a pixel falling from a half to nothing, of one in all.
+    let wrapped = across(&BilinearMap::seamless(side(columns)));
+    assert!(wrapped.abs_diff(250) < 25, "{wrapped}");
+}
+
+/// What is left out of a walk changes no point: counts and ranks at every number of points, of a map whose
+/// greatest value is anywhere.
+#[test]
+fn few_points_are_those_of_the_lowest_ranks_everywhere() {
+    for (domain, [columns, rows]) in domains() {
+        let tiles = f64::from(56 * columns * rows);
+        let spot = |at: DVec2| {
+            let away = away(&domain, domain.min() + 0.3 * domain.size(), at) / domain.size();
+            if away.length() < 0.1 { 1.0 } else { 0.02 }
+        };
+        let uneven = Function::new(spot, |_: &twelvefold::Disc| 1.0);
+        for seed in 0..3 {
+            let placement = Placement::seamless(domain, seed).unwrap();
+            let most = Sampling::new(&placement, &Constant::ONE, Amount::Points(1.5 * tiles));
+            let most = points(&most.unwrap()).unwrap();
+            for part in [0.001, 0.02, 0.07, 0.4, 0.999, 1.2] {
+                let density = Amount::Density(part * tiles / domain.area());
+                let all = Sampling::new(&placement, &Constant::ONE, density).unwrap();
+                let few = points(&all).unwrap();
+                assert_eq!(few, most[..few.len()]);
+                // Rank + u < T, at every place by itself.
+                let sampling = Sampling::new(&placement, &uneven, density).unwrap();
+                let found = points(&sampling).unwrap();
+                let kept = |(rank, at): &&(u64, DVec2)| {
+                    let limit = part * tiles * spot(*at);
+                    // Not told here within a rank of the limit, where u decides.
+                    (*rank as f64) < limit - 1.0
+                };
+                assert!(
+                    found.iter().filter(kept).eq(most.iter().filter(kept)),
+                    "{domain:?} {part}"
+                );
+                let past = |(rank, at): &&(u64, DVec2)| *rank as f64 > part * tiles * spot(*at);
+                assert_eq!(found.iter().filter(past).count(), 0);
+            }
+        }
     }
 }
 

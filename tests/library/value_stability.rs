@@ -1,13 +1,14 @@
 //! Same inputs, same points, bit for bit, in every version until the changelog says otherwise.
 //!
 //! Each line of the golden file is a case, its number of points, and the first 16 hex digits of the
-//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank. The inputs come from
-//! integer arithmetic alone.
+//! SHA-256 of its points: rank and the bits of x and y, little-endian, sorted by rank; on meshes, see
+//! `describe_mesh`. The inputs come from integer arithmetic alone.
 
 use std::fmt::Write as _;
 
-use glam::{DVec2, Vec2};
+use glam::{DVec2, Vec2, Vec3};
 use sha2::{Digest, Sha256};
+use twelvefold::mesh::Mesh;
 use twelvefold::{
     Amount, Constant, Disc, Domain, Function, ImageMap, Importance, InvalidPixels, Pixels,
     Placement, Sampling, StippleMap,
@@ -40,6 +41,39 @@ fn edges() -> ImageMap {
 
 fn hot_spot() -> ImageMap {
     map(512, 256, |x, y| if x == 300 && y == 77 { 30_000.0 } else { 1.0 + (x / 64) as f32 })
+}
+
+/// 12 × 9 squares of two triangles, corners up to 1.5 above the plane.
+fn hills() -> Mesh {
+    let corner = |i: usize| {
+        let (x, y) = (i % 13, i / 13);
+        Vec3::new(x as f32, y as f32, ((x * x + 3 * y) % 7) as f32 / 4.0)
+    };
+    let corners: Vec<Vec3> = (0..13 * 10).map(corner).collect();
+    let squares = (0..12 * 9u32).map(|i| i / 12 * 13 + i % 12);
+    let triangles: Vec<[u32; 3]> =
+        squares.flat_map(|a| [[a, a + 1, a + 14], [a, a + 14, a + 13]]).collect();
+    Mesh::new(&corners, &triangles).unwrap()
+}
+
+/// Two lines of the golden file: 1,000 points as they are placed, and evened out. Their hashes are those of
+/// position, triangle and weights, in order.
+fn describe_mesh(lines: &mut String, name: &str, mesh: &Mesh, seed: u64) {
+    let mut points = mesh.points(1000, seed).unwrap();
+    for steps in [0, 30] {
+        mesh.relax(&mut points, steps).unwrap();
+        let mut hash = Sha256::new();
+        for point in &points {
+            for coordinate in point.position.to_array() {
+                hash.update(coordinate.to_bits().to_le_bytes());
+            }
+            hash.update(point.triangle.to_le_bytes());
+            for weight in point.weights {
+                hash.update(weight.to_bits().to_le_bytes());
+            }
+        }
+        line(lines, &format!("{name}-relaxed-{steps}"), "f64", points.len(), hash);
+    }
 }
 
 /// One line of the golden file for each precision.
@@ -167,6 +201,12 @@ fn points_are_those_of_the_golden_file() {
         describe(&mut lines, &format!("seamless-texture-{name}"), &mapped);
         let relaxed = mapped.relaxed().unwrap();
         describe(&mut lines, &format!("seamless-texture-relaxed-{name}"), &relaxed);
+    }
+    for seed in [1, 2] {
+        describe_mesh(&mut lines, &format!("mesh-constant-{seed}"), &hills(), seed);
+        let densities: Vec<f32> = (0..13 * 10).map(|i| (i % 13 * (i / 13) % 5) as f32).collect();
+        let mesh = hills().with_densities(&densities).unwrap();
+        describe_mesh(&mut lines, &format!("mesh-density-{seed}"), &mesh, seed);
     }
     if std::env::var_os("TWELVEFOLD_BLESS").is_some() {
         let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/library/golden/points.txt");

@@ -17,6 +17,8 @@ pub(in crate::importance) struct Grid {
     pub(in crate::importance) min: DVec2,
     /// Width and height of a pixel, in units.
     pub(in crate::importance) texel: DVec2,
+    /// Whether the pixels beyond the border are those at the opposite one.
+    pub(in crate::importance) wraps: bool,
 }
 
 /// The four pixels around each of some points, and the weights of the right and the lower ones.
@@ -34,6 +36,18 @@ fn between(coordinate: f64, last: f64) -> (f64, f64, f64) {
     let before = floor_within(coordinate, last);
     let after = if before < last { before + 1.0 } else { last };
     (before, after, clamp(coordinate - before, 1.0))
+}
+
+/// The same where the pixel before the first is the last: beyond half a pixel from the outermost centers,
+/// all is as it is there.
+#[inline(always)]
+fn between_wrapped(coordinate: f64, last: f64) -> (f64, f64, f64) {
+    // Counted from the last pixel's center, before the first one's.
+    let from_last = clamp(coordinate + 0.5, last + 1.0) + 0.5;
+    let passed = floor_within(from_last, last + 1.0);
+    let before = if passed > 0.0 { passed - 1.0 } else { last };
+    let after = if passed <= last { passed } else { 0.0 };
+    (before, after, clamp(from_last - passed, 1.0))
 }
 
 /// The value between four pixels: left and right above, left and right below.
@@ -69,19 +83,30 @@ fn mix_one_side([a, b, c, d]: [f64; 4], [s, t]: [f64; 2]) -> f64 {
 impl Grid {
     /// Indices of the four pixels around a point, below 2⁵², and its weights.
     #[inline(always)]
-    fn cell(&self, [x, y]: [f64; 2]) -> ([f64; 4], [f64; 2]) {
+    fn cell<const WRAPS: bool>(&self, [x, y]: [f64; 2]) -> ([f64; 4], [f64; 2]) {
         let (last_x, last_y) = ((self.width - 1) as f64, (self.height - 1) as f64);
         let width = self.width as f64;
+        let between = if WRAPS { between_wrapped } else { between };
         let (x0, x1, s) = between((x - self.min.x) / self.texel.x - 0.5, last_x);
         let (y0, y1, t) = between((y - self.min.y) / self.texel.y - 0.5, last_y);
         let (above, below) = (y0 * width, y1 * width);
         ([above + x0, above + x1, below + x0, below + x1], [s, t])
     }
 
+    /// The same as this grid goes on over its border.
+    #[inline(always)]
+    fn cell_at(&self, at: DVec2) -> ([f64; 4], [f64; 2]) {
+        if self.wraps {
+            self.cell::<true>(at.to_array())
+        } else {
+            self.cell::<false>(at.to_array())
+        }
+    }
+
     /// The value of a plane at a point; the border's beyond it.
     #[inline]
     pub(in crate::importance) fn value<T: Copy + Into<f64>>(&self, plane: &[T], at: DVec2) -> f64 {
-        let (corners, weights) = self.cell(at.to_array());
+        let (corners, weights) = self.cell_at(at);
         mix(corners.map(|i| plane[i as usize].into()), weights)
     }
 
@@ -92,7 +117,7 @@ impl Grid {
         plane: &[T],
         at: DVec2,
     ) -> f64 {
-        let (corners, weights) = self.cell(at.to_array());
+        let (corners, weights) = self.cell_at(at);
         mix_one_side(corners.map(|i| plane[i as usize].into()), weights)
     }
 
@@ -102,13 +127,18 @@ impl Grid {
         &self,
         points: impl Iterator<Item = [f64; 2]>,
     ) -> Option<Cells> {
+        if self.wraps { self.cells_of::<true>(points) } else { self.cells_of::<false>(points) }
+    }
+
+    #[inline(always)]
+    fn cells_of<const WRAPS: bool>(&self, points: impl Iterator<Item = [f64; 2]>) -> Option<Cells> {
         self.width.checked_mul(self.height).filter(|pixels| *pixels < u32::MAX as usize)?;
         let mut cells = Cells { len: 0, corners: [[0; RUN]; 4], weights: [[0.0; RUN]; 2] };
         let Cells { corners: [a, b, c, d], weights: [s, t], .. } = &mut cells;
         let to = a.iter_mut().zip(b).zip(c).zip(d).zip(s.iter_mut().zip(t));
         let mut len = 0;
         for (((((a, b), c), d), (s, t)), point) in to.zip(points) {
-            let (corners, weights) = self.cell(point);
+            let (corners, weights) = self.cell::<WRAPS>(point);
             [*a, *b, *c, *d] = corners.map(|i| (i + INTEGERS).to_bits() as u32);
             [*s, *t] = weights;
             len += 1;
@@ -169,9 +199,10 @@ mod tests {
             min in prop_oneof![Just(DVec2::ZERO), Just(DVec2::new(-3.25, 7.7))],
             texel in prop_oneof![Just(DVec2::ONE), Just(DVec2::new(0.3, 17.0))],
             points in prop::collection::vec((-3.0f64..12.0, -3.0f64..12.0), RUN),
+            wraps: bool,
             seed: u32,
         ) {
-            let grid = Grid { width, height, min, texel };
+            let grid = Grid { width, height, min, texel, wraps };
             let plane: Vec<f32> = (0..width * height)
                 .map(|i| (i as u32).wrapping_mul(2_654_435_761).wrapping_add(seed) as f32)
                 .collect();
