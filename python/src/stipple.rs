@@ -2,11 +2,9 @@
 
 use glam::DVec2;
 use pyo3::prelude::*;
-use twelvefold::estimate::exactly;
+use twelvefold::estimate::exactly_relaxed;
 use twelvefold::refine::Refiner;
-use twelvefold::{
-    Amount, ImageMap, InvalidPixels, Limits, Pixels, Placement, Sampling, StippleMap,
-};
+use twelvefold::{Amount, InvalidPixels, Limits, Pixels, Placement, Sampling, StippleMap};
 
 use crate::arrays::Image;
 use crate::tone::{self, Tone};
@@ -75,14 +73,14 @@ fn copied((width, height, pixels): &Image) -> PyResult<Image> {
     Ok((*width, *height, copy))
 }
 
-/// Exactly n dots, in progressive order.
+/// Exactly n dots, relaxed, in the order of the walk.
 fn exact_dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
     let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
-        .and_then(ImageMap::new)
+        .and_then(|pixels| StippleMap::new(pixels, n as f64))
         .map_err(error::map)?;
     let placement = Placement::new(map.domain(), seed);
-    let made = exactly(&placement, &map, n, Limits::default()).map_err(error::exact)?;
-    Ok(made.iter().map(|point| point.position).collect())
+    let made = exactly_relaxed::<DVec2, _>(&placement, &map, n, Limits::default());
+    Ok(made.map_err(error::exact)?.iter().map(|point| point.position).collect())
 }
 
 /// About n dots, relaxed, in the order of the walk.

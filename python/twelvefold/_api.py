@@ -37,8 +37,7 @@ def stipple(
         Move the refined dots once more, each to the center of a cell that holds as much of the picture as
         every other: the best there is, in about four times the time.
     exact : bool
-        Exactly n dots. With ``refine=0`` they come in an order of which each beginning is itself a good
-        stippling.
+        Exactly n dots, instead of about as many.
     seed : int, 0 to 2**64 - 1
         Chooses which of many equally good arrangements is made.
     invert : bool
