@@ -10,9 +10,10 @@ use twelvefold::light::{Frame, InfiniteRadiance};
 use twelvefold::tiling::TileType;
 use twelvefold_lab::measure::Window;
 
-use crate::drawing::Format;
-use crate::page::length::Length;
+use crate::format::Format;
 use crate::page::options::PaperOptions;
+use twelvefold_stipple::dots::Centers;
+use twelvefold_stipple::page::length::Length;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
@@ -372,7 +373,7 @@ pub(crate) struct StippleOptions {
     ///
     /// [default: relaxed; `--exact` begins with fixed ones]
     #[arg(long, value_enum, value_name = "HOW", conflicts_with = "exact")]
-    pub(crate) centers: Option<Centers>,
+    pub(crate) centers: Option<CentersName>,
 
     /// Whether dots allow for the ink that is lost where they overlap: `correct` puts more of them where it
     /// is dark, so that ink covers as much as the photograph asks for; `ignore` puts as many as it asks.
@@ -415,11 +416,21 @@ pub(crate) enum DotGain {
 
 /// Where dots lie before they are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Centers {
+pub(crate) enum CentersName {
     /// Moved aside, evenly spread.
     Relaxed,
     /// At the centers of tiles.
     Fixed,
+}
+
+impl CentersName {
+    /// The centers of this name.
+    pub(crate) fn centers(self) -> Centers {
+        match self {
+            Self::Relaxed => Centers::Relaxed,
+            Self::Fixed => Centers::Fixed,
+        }
+    }
 }
 
 /// Reads a gray level.

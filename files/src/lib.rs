@@ -7,8 +7,11 @@
 )]
 
 pub mod failure;
+#[cfg(feature = "program")]
 mod interrupt;
+#[cfg(feature = "program")]
 pub mod output;
 pub mod picture;
 pub mod point_list;
+#[cfg(feature = "program")]
 pub mod progress;

@@ -27,7 +27,7 @@ fn share(darkness: f32) -> f32 {
 }
 
 /// Turns darkness, 0 to 1, into the share of each pixel's area that dots should have.
-pub(crate) fn correct(pixels: &mut [f32]) {
+pub fn correct(pixels: &mut [f32]) {
     for pixel in pixels {
         *pixel = share(*pixel);
     }
@@ -35,7 +35,7 @@ pub(crate) fn correct(pixels: &mut [f32]) {
 
 /// Turns darkness, 0 to 1, into its square: a line through dots is as long as the root of their number, so
 /// that squares give it the picture's tone.
-pub(crate) fn square(pixels: &mut [f32]) {
+pub fn square(pixels: &mut [f32]) {
     for pixel in pixels {
         *pixel *= *pixel;
     }

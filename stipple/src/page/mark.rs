@@ -1,21 +1,8 @@
 //! What is drawn for each dot.
 
-use clap::ValueEnum;
-
-/// A kind of mark, as the command line has it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Marks {
-    /// A filled circle.
-    Disc,
-    /// The shortest stroke: pen down, pen up.
-    Tap,
-    /// A circle that the pen draws, and within it as many as fill a dot wider than the pen.
-    Ring,
-}
-
 /// What is drawn where dots are, with its sizes in the sheet's unit.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Mark {
+pub enum Mark {
     /// A filled circle of this diameter.
     Disc(f64),
     /// A stroke without a length, of this width.
@@ -28,7 +15,7 @@ pub(crate) enum Mark {
 
 impl Mark {
     /// The circles that fill a dot of this diameter, which is at least the pen's.
-    pub(crate) fn ring(dot: f64, pen: f64) -> Self {
+    pub fn ring(dot: f64, pen: f64) -> Self {
         let mut radii = vec![(dot - pen) / 2.0];
         // A circle's inner border is half a pen nearer to the center than its radius says.
         while let Some(&inner) = radii.last().filter(|radius| **radius > 0.5 * pen) {
@@ -38,7 +25,7 @@ impl Mark {
     }
 
     /// The width of what the pen leaves, all strokes of a dot together.
-    pub(crate) fn width(&self) -> f64 {
+    pub fn width(&self) -> f64 {
         match self {
             Self::Disc(width) | Self::Tap(width) | Self::Line(width) => *width,
             Self::Ring { radii, pen } => 2.0 * radii.first().unwrap_or(&0.0) + pen,
@@ -46,7 +33,7 @@ impl Mark {
     }
 
     /// The width of one stroke.
-    pub(crate) fn stroke(&self) -> f64 {
+    pub fn stroke(&self) -> f64 {
         match self {
             Self::Ring { pen, .. } => *pen,
             _ => self.width(),

@@ -9,7 +9,7 @@ use super::{Drawing, Layer};
 /// An array of shape (dots, 2) and type float32, or with the layer's number, from 0, as a third column. NPY version 1.0. Its header says how many dots there are, so
 /// they are held in memory, eight bytes each, until all are in.
 #[derive(Debug)]
-pub(crate) struct Npy<W: Write> {
+pub struct Npy<W: Write> {
     out: W,
     bytes: Vec<u8>,
     columns: usize,
@@ -17,7 +17,7 @@ pub(crate) struct Npy<W: Write> {
 }
 
 impl<W: Write> Npy<W> {
-    pub(crate) fn new(out: W, named: bool) -> Self {
+    pub fn new(out: W, named: bool) -> Self {
         Self { out, bytes: Vec::new(), columns: if named { 3 } else { 2 }, layers: 0 }
     }
 }

@@ -1,16 +1,11 @@
-//! The kinds of files.
+//! The kinds of files that dots are written to.
 
 use std::io::Write;
 use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::csv::Csv;
-use super::npy::Npy;
-use super::pdf::Pdf;
-use super::png::Png;
-use super::svg::Svg;
-use super::{Drawing, DrawingError, Look};
+use twelvefold_stipple::drawing::{Csv, Drawing, DrawingError, Look, Npy, Pdf, Png, Svg};
 
 /// What to write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

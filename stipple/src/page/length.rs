@@ -12,7 +12,7 @@ const LONGEST_SIDE: f64 = 100_000.0;
 
 /// A length above zero: a number with or without a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Length {
+pub enum Length {
     /// Without a unit: what it means is for the option to say.
     Bare(f64),
     Millimeters(f64),
@@ -20,7 +20,7 @@ pub(crate) enum Length {
 
 impl Length {
     /// The length in millimeters, which a bare number is taken to be in.
-    pub(crate) fn millimeters(self) -> f64 {
+    pub fn millimeters(self) -> f64 {
         match self {
             Self::Bare(length) | Self::Millimeters(length) => length,
         }
@@ -47,7 +47,7 @@ impl FromStr for Length {
 }
 
 /// Reads a length of zero or more, in millimeters unless it says otherwise.
-pub(crate) fn margin(text: &str) -> Result<f64, String> {
+pub fn margin(text: &str) -> Result<f64, String> {
     let (number, unit) = split(text);
     if number.parse() == Ok(0.0) && ["", "mm", "in"].contains(&unit) {
         return Ok(0.0);
@@ -65,12 +65,12 @@ fn split(text: &str) -> (&str, &str) {
 
 /// The size of a page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PageSize {
+pub struct PageSize {
     /// Millimeters.
-    pub(crate) size: DVec2,
+    pub size: DVec2,
     /// Whether the page may be turned so that the picture is larger: a kind of paper may, a size that was
     /// written out is meant as it stands.
-    pub(crate) turns: bool,
+    pub turns: bool,
 }
 
 impl FromStr for PageSize {

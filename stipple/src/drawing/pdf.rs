@@ -10,7 +10,7 @@ use pdf_writer::{Filter, Finish as _, Name, Pdf as Writer, Rect, Ref, TextStr};
 use super::decimal;
 use super::{Drawing, Layer, Look};
 use crate::page::color::Color;
-use crate::page::marks::Mark;
+use crate::page::mark::Mark;
 use crate::page::sheet::Unit;
 
 /// Points, PDF's unit, in a millimeter and in a screen's pixel.
@@ -26,7 +26,7 @@ const QUARTER: f64 = 0.552_284_75;
 /// A PDF file of one page. Its strokes are held in memory, compressed, some ten bytes each, until all are in:
 /// their length goes before them.
 #[derive(Debug)]
-pub(crate) struct Pdf<'a, W: Write> {
+pub struct Pdf<'a, W: Write> {
     out: W,
     look: &'a Look,
     content: ZlibEncoder<Vec<u8>>,
@@ -44,7 +44,7 @@ impl<'a, W: Write> Pdf<'a, W> {
     ///
     /// # Errors
     /// Those of memory.
-    pub(crate) fn new(out: W, look: &'a Look) -> io::Result<Self> {
+    pub fn new(out: W, look: &'a Look) -> io::Result<Self> {
         let points = match look.sheet.unit {
             Unit::Pixel(scale) => POINTS_IN_PIXEL * scale,
             Unit::Millimeter(_) => POINTS_IN_MILLIMETER,

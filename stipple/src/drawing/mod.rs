@@ -5,7 +5,6 @@ mod canvas;
 mod coverage;
 mod csv;
 mod decimal;
-mod format;
 mod npy;
 mod pdf;
 mod png;
@@ -17,13 +16,17 @@ use std::io;
 use glam::DVec2;
 
 use crate::page::color::Color;
-use crate::page::marks::Mark;
+use crate::page::mark::Mark;
 use crate::page::sheet::Sheet;
 
-pub(crate) use self::format::Format;
+pub use self::csv::Csv;
+pub use self::npy::Npy;
+pub use self::pdf::Pdf;
+pub use self::png::Png;
+pub use self::svg::Svg;
 
 /// A file being filled with the dots of one layer after the other.
-pub(crate) trait Drawing {
+pub trait Drawing {
     /// Begins a layer. There is one before the first dot.
     ///
     /// # Errors
@@ -45,30 +48,30 @@ pub(crate) trait Drawing {
 
 /// What one pen draws.
 #[derive(Debug, Clone)]
-pub(crate) struct Layer {
-    pub(crate) name: String,
-    pub(crate) color: Color,
+pub struct Layer {
+    pub name: String,
+    pub color: Color,
 }
 
 /// What the drawing looks like.
 #[derive(Debug, Clone)]
-pub(crate) struct Look {
-    pub(crate) sheet: Sheet,
-    pub(crate) mark: Mark,
+pub struct Look {
+    pub sheet: Sheet,
+    pub mark: Mark,
     /// The distance of neighbors where dots are densest, in the sheet's unit.
-    pub(crate) spacing: f64,
+    pub spacing: f64,
     /// What lies below the dots where something must: pixels have to have a color.
-    pub(crate) ground: Color,
+    pub ground: Color,
     /// Whether the ground is drawn where nothing need lie there.
-    pub(crate) ground_drawn: bool,
+    pub ground_drawn: bool,
     /// Averages are to be right in linear light, instead of in encoded values.
-    pub(crate) linear: bool,
+    pub linear: bool,
     /// Lists say of which layer each dot is.
-    pub(crate) named: bool,
+    pub named: bool,
     /// What the drawing shows, in plain text.
-    pub(crate) title: String,
+    pub title: String,
     /// How it was made, in plain text.
-    pub(crate) description: String,
+    pub description: String,
 }
 
 impl Look {
@@ -85,7 +88,7 @@ impl Look {
 
 /// Why a drawing cannot be begun.
 #[derive(Debug)]
-pub(crate) enum DrawingError {
+pub enum DrawingError {
     /// A picture of pixels would need more memory than the limit, or than there is.
     TooLarge { width: f64, height: f64, page: bool },
     /// The system's.

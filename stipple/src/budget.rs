@@ -11,13 +11,13 @@ const LEAST: f64 = 3_000.0;
 const DENSEST: f64 = 4.0;
 
 /// The number of dots for a picture whose importance adds up to `black` pixels of black.
-pub(crate) fn default_count(black: f64) -> f64 {
+pub fn default_count(black: f64) -> f64 {
     let least = LEAST.min(DENSEST * black);
     (black / AREA_PER_DOT).max(least).min(MOST).round().max(1.0)
 }
 
 /// The diameter at which `density` dots in a squared pixel have an area of one squared pixel.
-pub(crate) fn default_dot_size(density: f64) -> f64 {
+pub fn default_dot_size(density: f64) -> f64 {
     if density > 0.0 { (4.0 / (std::f64::consts::PI * density)).sqrt() } else { 1.0 }
 }
 

@@ -7,14 +7,14 @@ use glam::DVec2;
 use super::length::PageSize;
 
 /// Steps of coordinates on a page, in a millimeter: finer than any plotter.
-pub(crate) const STEPS: f64 = 1e3;
+pub const STEPS: f64 = 1e3;
 
 /// The length of a dot's stroke, in the sheet's unit: too short to see, but programs drop those without any.
-pub(crate) const TAP: f64 = 0.01;
+pub const TAP: f64 = 0.01;
 
 /// What a sheet measures in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Unit {
+pub enum Unit {
     /// The photograph's pixel, shown this many pixels large.
     Pixel(f64),
     /// The millimeter, shown this many pixels large where there are pixels.
@@ -23,9 +23,9 @@ pub(crate) enum Unit {
 
 /// The drawing's rectangle, from (0, 0) at the upper left, and a photograph on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sheet {
-    pub(crate) size: DVec2,
-    pub(crate) unit: Unit,
+pub struct Sheet {
+    pub size: DVec2,
+    pub unit: Unit,
     /// The photograph's upper left corner, and the side of its pixels.
     corner: DVec2,
     pixel: f64,
@@ -35,24 +35,24 @@ pub(crate) struct Sheet {
 
 /// How wide a dot is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum DotWidth {
+pub enum DotWidth {
     Pixels(f64),
     Millimeters(f64),
 }
 
 /// A page as it was asked for.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Page {
-    pub(crate) size: PageSize,
+pub struct Page {
+    pub size: PageSize,
     /// `None` is the default.
-    pub(crate) margin: Option<f64>,
-    pub(crate) landscape: bool,
-    pub(crate) dpi: u16,
+    pub margin: Option<f64>,
+    pub landscape: bool,
+    pub dpi: u16,
 }
 
 /// The margins leave no room.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NoRoom {
+pub struct NoRoom {
     size: DVec2,
     margin: f64,
 }
@@ -68,7 +68,7 @@ impl std::error::Error for NoRoom {}
 
 impl Sheet {
     /// The photograph itself, `scale` times as large on a screen.
-    pub(crate) fn of_pixels(photograph: DVec2, scale: f64) -> Self {
+    pub fn of_pixels(photograph: DVec2, scale: f64) -> Self {
         let unit = Unit::Pixel(scale);
         Self { size: photograph, unit, corner: DVec2::ZERO, pixel: 1.0, photograph }
     }
@@ -78,7 +78,7 @@ impl Sheet {
     ///
     /// # Errors
     /// [`NoRoom`].
-    pub(crate) fn of_page(photograph: DVec2, page: &Page, dot: DotWidth) -> Result<Self, NoRoom> {
+    pub fn of_page(photograph: DVec2, page: &Page, dot: DotWidth) -> Result<Self, NoRoom> {
         let given = page.size.size;
         let (short, long) = (given.min_element(), given.max_element());
         let (upright, lying) = (DVec2::new(short, long), DVec2::new(long, short));
@@ -113,17 +113,17 @@ impl Sheet {
     }
 
     /// The side of a pixel of the photograph.
-    pub(crate) fn pixel(&self) -> f64 {
+    pub fn pixel(&self) -> f64 {
         self.pixel
     }
 
     /// Whether this is a page, in millimeters.
-    pub(crate) fn is_page(&self) -> bool {
+    pub fn is_page(&self) -> bool {
         matches!(self.unit, Unit::Millimeter(_))
     }
 
     /// Pixels in a unit, where a drawing has pixels.
-    pub(crate) fn resolution(&self) -> f64 {
+    pub fn resolution(&self) -> f64 {
         match self.unit {
             Unit::Pixel(resolution) | Unit::Millimeter(resolution) => resolution,
         }
@@ -131,14 +131,14 @@ impl Sheet {
 
     /// The upper left and lower right corner of where dots' centers may lie. On a page, their strokes, which
     /// go to the right, end on the photograph too.
-    pub(crate) fn picture(&self) -> [DVec2; 2] {
+    pub fn picture(&self) -> [DVec2; 2] {
         let end = self.corner + self.pixel * self.photograph;
         [self.corner, if self.is_page() { end - DVec2::new(TAP, 0.0) } else { end }]
     }
 
     /// Where on the sheet a place of the photograph is: on a page rounded to its steps and in the picture,
     /// else exactly representable in 32 bits and within the photograph's half-open rectangle.
-    pub(crate) fn place(&self, dot: DVec2) -> DVec2 {
+    pub fn place(&self, dot: DVec2) -> DVec2 {
         match self.unit {
             Unit::Millimeter(_) => self.rounded(self.corner + self.pixel * dot),
             Unit::Pixel(_) => DVec2::new(
@@ -149,7 +149,7 @@ impl Sheet {
     }
 
     /// The step nearest to `at` that lies in the picture.
-    pub(crate) fn rounded(&self, at: DVec2) -> DVec2 {
+    pub fn rounded(&self, at: DVec2) -> DVec2 {
         let [low, high] = self.picture().map(|corner| corner * STEPS);
         let (low, high) = (low.ceil(), high.floor());
         (at * STEPS).round().min(high).max(low) / STEPS

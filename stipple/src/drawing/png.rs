@@ -8,7 +8,7 @@ use super::canvas::Canvas;
 use super::coverage::FULL;
 use super::{Drawing, DrawingError, Layer, Look};
 use crate::page::color::Color;
-use crate::page::marks::Mark;
+use crate::page::mark::Mark;
 use twelvefold_files::picture::srgb;
 
 /// The most bytes of a drawing in memory: one gibibyte. Two for each of its pixels, three more from the second
@@ -19,7 +19,7 @@ const MILLIMETERS_IN_METER: f64 = 1e3;
 
 /// A PNG picture, gray where its colors are. It is held in memory, two bytes a pixel, until all dots are in.
 #[derive(Debug)]
-pub(crate) struct Png<'a, W: Write> {
+pub struct Png<'a, W: Write> {
     out: W,
     look: &'a Look,
     canvas: Canvas,
@@ -41,7 +41,7 @@ impl<'a, W: Write> Png<'a, W> {
     ///
     /// # Errors
     /// [`DrawingError::TooLarge`], before anything is allocated.
-    pub(crate) fn new(out: W, look: &'a Look) -> Result<Self, DrawingError> {
+    pub fn new(out: W, look: &'a Look) -> Result<Self, DrawingError> {
         let resolution = look.sheet.resolution();
         let size = (look.sheet.size * resolution).round().max(DVec2::ONE);
         let DVec2 { x: width, y: height } = size;

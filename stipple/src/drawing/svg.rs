@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use super::decimal;
 use super::{Drawing, Layer, Look};
-use crate::page::marks::Mark;
+use crate::page::mark::Mark;
 use crate::page::sheet::{TAP, Unit};
 
 /// A path ends after so many dots, and another begins: some readers of XML take no attribute longer than ten
@@ -20,7 +20,7 @@ const DOTS_IN_PATH: u64 = 200_000;
 /// An SVG file whose user unit is the photograph's pixel, or the millimeter. Streams: each dot is written when
 /// it comes.
 #[derive(Debug)]
-pub(crate) struct Svg<'a, W: Write> {
+pub struct Svg<'a, W: Write> {
     out: BufWriter<W>,
     look: &'a Look,
     decimals: usize,
@@ -39,7 +39,7 @@ impl<'a, W: Write> Svg<'a, W> {
     ///
     /// # Errors
     /// The system's.
-    pub(crate) fn new(out: W, look: &'a Look) -> io::Result<Self> {
+    pub fn new(out: W, look: &'a Look) -> io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
         let DVec2 { x: width, y: height } = look.sheet.size;
         let (shown_width, shown_height) = match look.sheet.unit {

@@ -11,35 +11,54 @@ use twelvefold::{
 };
 use twelvefold_files::picture::Picture;
 
-use crate::args::Centers;
-
 /// From this many dots on, they are drawn as they come, unless refinement is asked for: a list of them all,
 /// and what refining needs beside it, would take a hundred bytes a dot.
-pub(crate) const STREAMED: f64 = 2_000_000.0;
+pub const STREAMED: f64 = 2_000_000.0;
 
 /// What is wanted of the dots.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wish {
-    pub(crate) count: Count,
-    pub(crate) centers: Centers,
-    pub(crate) seed: u64,
+pub struct Wish {
+    pub count: Count,
+    pub centers: Centers,
+    pub seed: u64,
     /// Iterations.
-    pub(crate) refine: usize,
+    pub refine: usize,
     /// Polished after them.
-    pub(crate) best: bool,
+    pub best: bool,
     /// In an order of which each beginning is itself a good set.
-    pub(crate) ranked: bool,
+    pub ranked: bool,
+}
+
+impl Wish {
+    /// How the dots were made, in plain text.
+    pub fn description(&self) -> String {
+        let dots = match self.count {
+            Count::About(count) => format!("about {count}"),
+            Count::Exactly(count) => count.to_string(),
+        };
+        let (version, seed) = (env!("CARGO_PKG_VERSION"), self.seed);
+        format!("Stippled with {dots} dots by twelvefold {version}, seed {seed}")
+    }
+}
+
+/// Where dots lie before they are refined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Centers {
+    /// Moved aside, evenly spread.
+    Relaxed,
+    /// At the centers of tiles.
+    Fixed,
 }
 
 /// A number of dots.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Count {
+pub enum Count {
     About(f64),
     Exactly(usize),
 }
 
 impl Count {
-    pub(crate) fn number(self) -> f64 {
+    pub fn number(self) -> f64 {
         match self {
             Self::About(count) => count,
             Self::Exactly(count) => count as f64,
@@ -48,13 +67,13 @@ impl Count {
 }
 
 /// The iterations for so many dots, if nobody says; `best` dots are always refined.
-pub(crate) fn default_iterations(count: f64, best: bool) -> usize {
+pub fn default_iterations(count: f64, best: bool) -> usize {
     if count < STREAMED || best { ITERATIONS } else { 0 }
 }
 
 /// Why there are no dots, or no more of them.
 #[derive(Debug)]
-pub(crate) enum DotsError<E> {
+pub enum DotsError<E> {
     Map(MapError),
     Sampling(SamplingError),
     Exact(ExactError),
@@ -91,7 +110,7 @@ impl<E: fmt::Debug + fmt::Display> std::error::Error for DotsError<E> {}
 ///
 /// # Errors
 /// [`DotsError`], and what `take` fails with.
-pub(crate) fn place<E>(
+pub fn place<E>(
     picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
@@ -108,7 +127,7 @@ pub(crate) fn place<E>(
 ///
 /// # Errors
 /// [`DotsError`].
-pub(crate) fn list<E>(
+pub fn list<E>(
     picture: Picture,
     wish: Wish,
     iteration: impl FnMut(),
@@ -173,7 +192,7 @@ fn refined(
 ///
 /// # Errors
 /// [`RefineError`].
-pub(crate) fn classified(
+pub fn classified(
     classes: &Classes,
     dots: &mut [DVec2],
     wish: Wish,

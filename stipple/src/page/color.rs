@@ -4,14 +4,14 @@ use std::str::FromStr;
 
 /// An opaque color in encoded sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Color(pub(crate) [u8; 3]);
+pub struct Color(pub [u8; 3]);
 
 impl Color {
-    pub(crate) const BLACK: Self = Self([0; 3]);
-    pub(crate) const WHITE: Self = Self([255; 3]);
+    pub const BLACK: Self = Self([0; 3]);
+    pub const WHITE: Self = Self([255; 3]);
 
     /// The color as SVG has it, short where that is shorter.
-    pub(crate) fn svg(self) -> String {
+    pub fn svg(self) -> String {
         match self {
             Self::BLACK => "black".to_owned(),
             Self::WHITE => "white".to_owned(),
@@ -19,7 +19,7 @@ impl Color {
         }
     }
 
-    pub(crate) fn is_gray(self) -> bool {
+    pub fn is_gray(self) -> bool {
         let [red, green, blue] = self.0;
         red == green && green == blue
     }

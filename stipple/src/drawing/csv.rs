@@ -8,7 +8,7 @@ use super::{Drawing, Layer};
 
 /// Lines `x,y`, or `x,y,pen`, after a header that says so. A pen's name is that of its layer. Coordinates are the shortest decimals that read back as
 /// the same 32-bit floats.
-pub(crate) struct Csv<W: Write> {
+pub struct Csv<W: Write> {
     out: BufWriter<W>,
     /// What comes after the coordinates.
     end: String,
@@ -22,7 +22,7 @@ impl<W: Write> Csv<W> {
     ///
     /// # Errors
     /// The system's.
-    pub(crate) fn new(out: W, named: bool) -> io::Result<Self> {
+    pub fn new(out: W, named: bool) -> io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
         out.write_all(if named { b"x,y,pen\n" } else { b"x,y\n" })?;
         Ok(Self {
