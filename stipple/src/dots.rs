@@ -141,7 +141,10 @@ pub fn list<E>(
 }
 
 /// The list of the dots as the sampling gives them, ranked if that is wished.
-fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>> {
+///
+/// # Errors
+/// [`DotsError`].
+pub fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsError<E>> {
     let mut dots = Vec::new();
     let mut keys: Vec<f64> = Vec::new();
     raw(picture, wish, |dot, key| {

@@ -31,8 +31,9 @@ use std::path::Path;
 pub use format::Format;
 pub use tone::{Levels, Tone};
 
+use image::metadata::Orientation;
 use pixel::Pixel;
-use plane::Decoded;
+use plane::{Decoded, Plane};
 use sample::{Alpha, Colors, Sample};
 use source::Source;
 use tone::Toner;
@@ -232,12 +233,42 @@ pub fn read(path: &Path, tone: Tone) -> Result<Picture, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn read_layer(path: &Path, tone: Tone, layer: Option<&str>) -> Result<Picture, PictureError> {
-    let decoded = decode(path, Wanted { tone, layer, radiance: false })?;
+    Ok(importance(decode(path, Wanted { tone, layer, radiance: false })?))
+}
+
+/// Reads a photograph as [`read`] does, from the bytes of a file of this name.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn read_bytes(bytes: Vec<u8>, name: &Path, tone: Tone) -> Result<Picture, PictureError> {
+    let wanted = Wanted { tone, layer: None, radiance: false };
+    Ok(importance(decode_source(Source::of_bytes(bytes)?, name, wanted)?))
+}
+
+/// The picture of encoded sRGB pixels, red, green, blue and coverage from 0 to 255 each, row by row from the top.
+///
+/// # Errors
+/// [`PictureError::Empty`] without pixels or with fewer than `width` · `height`, [`PictureError::TooLarge`] beyond
+/// the memory limit.
+pub fn of_rgba(
+    (width, height): (usize, usize),
+    rgba: &[u8],
+    tone: Tone,
+) -> Result<Picture, PictureError> {
+    let toner = Toner::new::<u8>(tone, Colors::Rgb, Alpha::Straight, color::Space::default());
+    let mut plane = Plane::new((width, height), Orientation::NoTransforms, f32::NOTHING)?;
+    let rgba = rgba.get(..width * height * 4).ok_or(PictureError::Empty)?;
+    raster::paint(&mut plane, width, &toner, rgba, |[byte]| byte);
+    Ok(importance(plane.finish(None)?))
+}
+
+/// The picture of decoded importance.
+fn importance(decoded: Decoded<f32>) -> Picture {
     let Decoded { width, height, pixels, range, warnings, .. } = decoded;
-    let mut importance: Vec<f32> = pixels;
+    let mut importance = pixels;
     // Resampling rounds.
     importance.iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
-    Ok(Picture { width, height, importance, range, warnings })
+    Picture { width, height, importance, range, warnings }
 }
 
 /// Reads the colors of a photograph, upright and in shape; of `tone` only the exposure
@@ -282,7 +313,15 @@ pub fn read_radiance(path: &Path) -> Result<Radiance, PictureError> {
 
 /// Reads the file at `path`.
 fn decode<P: Pixel>(path: &Path, wanted: Wanted<'_>) -> Result<Decoded<P>, PictureError> {
-    let mut source = Source::open(path)?;
+    decode_source(Source::open(path)?, path, wanted)
+}
+
+/// Reads what a file of this name holds.
+fn decode_source<P: Pixel>(
+    mut source: Source,
+    path: &Path,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
     let format = Format::detect(&mut source, path)?;
     let float = matches!(format, Format::Hdr | Format::OpenExr | Format::Pfm | Format::Tiff);
     if wanted.radiance && !float {

@@ -1,0 +1,61 @@
+//! `twelvefold-web-pack IN.wasm WORKER.js OUT.js [PICTURE …]` packs all that the page would otherwise fetch into one
+//! classic script: a page that is opened from a folder may load scripts, but neither WebAssembly nor modules, workers
+//! or the pixels of pictures.
+//!
+//! wasm-bindgen's JavaScript is written by its library here, which the lock file keeps at the version of the
+//! page's own; its program is installed apart, and would have to be the same by chance.
+
+use std::env;
+use std::error::Error;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use serde_json::{Map, Value, json};
+use wasm_bindgen_cli_support::Bindgen;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let [wasm, worker, output, pictures @ ..] = &arguments[..] else {
+        eprintln!("usage: twelvefold-web-pack IN.wasm WORKER.js OUT.js [PICTURE ...]");
+        return ExitCode::FAILURE;
+    };
+    match pack(wasm, worker, pictures).and_then(|script| Ok(fs::write(output, script)?)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{output}: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The script: a constant with the worker's source, the compressed engine, and the pictures by name.
+fn pack(wasm: &str, worker: &str, pictures: &[String]) -> Result<String, Box<dyn Error>> {
+    let folder = tempfile::tempdir()?;
+    let mut bindgen = Bindgen::new();
+    bindgen.input_path(wasm).out_name("engine").no_modules(true)?.typescript(false);
+    bindgen.generate(folder.path())?;
+    let glue = fs::read_to_string(folder.path().join("engine.js"))?;
+    let engine = fs::read(folder.path().join("engine_bg.wasm"))?;
+
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&engine)?;
+    let compressed = encoder.finish()?;
+    let mut samples = Map::new();
+    for picture in pictures {
+        let name = Path::new(picture).file_name().ok_or("a picture without a name")?;
+        let bytes = fs::read(picture)?;
+        samples.insert(name.to_string_lossy().into_owned(), BASE64_STANDARD.encode(bytes).into());
+    }
+    let packed = json!({
+        "worker": format!("{glue}\n{}", fs::read_to_string(worker)?),
+        "engine": BASE64_STANDARD.encode(compressed),
+        "samples": Value::Object(samples),
+    });
+    Ok(format!("\"use strict\";\nconst PACKED = {packed};\n"))
+}
