@@ -8,6 +8,7 @@ class Drawing {
     this.name = "";
     this.about = null;
     this.busy = 0;
+    this.known = null; // the promise that a new worker knows the picture
     this.calm = window.matchMedia("(prefers-reduced-motion: reduce)");
     this.stopButton = element("stop");
     this.progress = element("progress");
@@ -45,7 +46,7 @@ class Drawing {
         : error.message;
       this.trouble(`${source.name} ${reason}`);
       this.rest(this.source ? `Still showing ${this.name}.` : "");
-      if (error.fatal && this.source) await this.reopen(this.source).then(() => this.draw());
+      if (error.fatal) await this.draw();
     }
   }
 
@@ -81,6 +82,7 @@ class Drawing {
     };
     const number = ++this.busy;
     try {
+      await this.known;
       const watched = !this.calm.matches;
       const done = await this.engine.ask(
         "draw",
@@ -89,12 +91,11 @@ class Drawing {
         (said) => number === this.busy && heard(said),
       );
       if (number !== this.busy) return;
-      this.rest(done ? this.summary(counts, time) : "Stopped.");
+      this.rest(done ? this.summary(counts, time, done.cut ?? null) : "Stopped.");
     } catch (error) {
       if (number !== this.busy) return;
       this.trouble(`${this.name} ${error.message || "needs more memory than this browser gives."}`);
       this.rest("");
-      if (error.fatal) await this.reopen(this.source);
     }
   }
 
@@ -115,13 +116,14 @@ class Drawing {
     }
   }
 
-  summary(counts, time) {
+  summary(counts, time, cut) {
     const modes = Object.keys(counts);
     const dots = modes.length === 1
       ? plural(counts[modes[0]], "dot", "dots")
       : modes.map((mode) => `${counts[mode].toLocaleString("en")} ${mode}`).join(", ");
     const seconds = time < 9.5 ? `${Math.round(time)} ms` : `${(time / 1000).toFixed(2)} s`;
-    return [`${dots}, in ${seconds}.`, ...(this.remarks ?? [])].join(" ");
+    const stopped = cut === null ? [] : [`Stopped after ${cut} of ${this.settings.refine}.`];
+    return [`${dots}, in ${seconds}.`, ...stopped, ...(this.remarks ?? [])].join(" ");
   }
 
   working(text) {
@@ -144,8 +146,8 @@ class Drawing {
   }
 
   // A new worker knows no picture.
-  async restarted() {
-    if (this.source) await this.reopen(this.source);
+  restarted() {
+    if (this.source) this.known = this.reopen(this.source);
   }
 
   async download(kind) {

@@ -25,6 +25,7 @@ class Panes {
 
   // The panes of these modes, those that there were kept.
   show(modes) {
+    if (this.panes.map((pane) => pane.mode).join() === modes.join()) return;
     const old = new Map(this.panes.map((pane) => [pane.mode, pane]));
     this.panes = modes.map((mode) => old.get(mode) ?? new Pane(this, mode));
     this.place.replaceChildren(...this.panes.map((pane) => pane.figure));
@@ -126,7 +127,9 @@ class Pane {
   publish() {
     if (this.canvas.width !== this.hidden.width) this.canvas.width = this.hidden.width;
     if (this.canvas.height !== this.hidden.height) this.canvas.height = this.hidden.height;
-    this.canvas.getContext("2d").drawImage(this.hidden, 0, 0);
+    const context = this.canvas.getContext("2d");
+    context.globalCompositeOperation = "copy";
+    context.drawImage(this.hidden, 0, 0);
   }
 }
 

@@ -11,7 +11,9 @@ let source = null; // what was opened: bytes or pixels, with a name
 let photograph = null; // the engine's picture of it, in `tones`
 let tones = "";
 let camera = null;
-let wanted = 0; // the number of the drawing that is wanted; others stop
+let wanted = 0; // the number of the drawing that is wanted; others are dropped
+let stopping = false; // whether that one is to end as it is
+let loaded = null; // the promise of an engine
 const drawn = new Map(); // what was drawn last, by mode
 
 // A turn of the event loop: messages that have come are heard.
@@ -74,8 +76,9 @@ function about(picture, whole) {
 }
 
 const tasks = {
-  async load({ engine }) {
-    await wasm_bindgen({ module_or_path: await inflate(engine) });
+  load({ engine }) {
+    loaded = inflate(engine).then((bytes) => wasm_bindgen({ module_or_path: bytes }));
+    return loaded.then(() => null);
   },
 
   // A file's bytes or a canvas's pixels become the picture that is drawn.
@@ -91,6 +94,7 @@ const tasks = {
   // The dots of the picture in each of some modes, shown as they move.
   async draw({ settings, modes, dots, seed, refine, watched }, say) {
     const mine = (wanted += 1);
+    stopping = false;
     const asked = JSON.stringify(settings);
     if (asked !== tones) {
       const picture = await read(source, settings);
@@ -107,14 +111,16 @@ const tasks = {
     const about = { dots: count, usual, size: [picture.width, picture.height], dotSize: picture.dot_size(count) };
     for (const mode of modes) {
       const began = performance.now();
+      let cut = null; // after how many steps it was stopped
       const pause = async (step, places) => {
         say({ mode, step, of: refine, about, places: watched ? places : null });
         await turn();
-        return mine === wanted;
+        if (stopping) cut = step;
+        return mine === wanted && !stopping;
       };
       const stippled = await picture.stipple(MODES[mode], count, seed, refine, watched, pause);
-      if (!stippled || mine !== wanted) {
-        stippled?.free();
+      if (mine !== wanted) {
+        stippled.free();
         return null;
       }
       drawn.get(mode)?.free();
@@ -122,16 +128,18 @@ const tasks = {
       say({ mode, about, places: stippled.places(), milliseconds: performance.now() - began });
       await turn();
       if (mine !== wanted) return null;
+      if (stopping) return { cut };
     }
-    return about;
+    return {};
   },
 
   stop() {
-    wanted += 1;
+    stopping = true;
   },
 
   // What was drawn last, as a file.
   file({ mode, kind, title, dotSize, scale }) {
+    if (!drawn.has(mode)) throw new Error("cannot be written: nothing is drawn to the end");
     return drawn.get(mode).file(kind, title, dotSize, scale).buffer;
   },
 
@@ -150,7 +158,6 @@ const tasks = {
     const stippled = await picture.stipple(MODES[mode], dots, seed, refine, false, pause);
     const about = { dots, size: [pixels.width, pixels.height], dotSize: picture.dot_size(dots) };
     picture.free();
-    if (!stippled) return null;
     say({ mode, about, places: stippled.places() });
     drawn.get(mode)?.free();
     drawn.set(mode, stippled);
@@ -178,6 +185,7 @@ const tasks = {
 
 self.onmessage = async ({ data: { id, task, data } }) => {
   try {
+    if (task !== "load") await loaded;
     const say = (said) => self.postMessage({ id, said });
     self.postMessage({ id, result: await tasks[task](data ?? {}, say) });
   } catch (error) {

@@ -29,11 +29,11 @@ pub enum Mode {
 
 #[wasm_bindgen]
 impl Photograph {
-    /// A promise of about so many `dots`, as [`Stippled`]; of nothing, if it was stopped.
+    /// A promise of about so many `dots`, as [`Stippled`].
     ///
     /// `refine` is how often they are moved in [`Mode::Refined`]. Before each time, `pause` is called with how often
     /// they were moved and, if that is `watched`, where they are, as of [`Stippled::places`]; it returns a promise
-    /// that says whether to go on.
+    /// that says whether to go on; else the dots stay where they are then.
     #[must_use]
     pub fn stipple(
         &self,
@@ -66,7 +66,7 @@ impl Photograph {
                         places = Float32Array::from(&places_on(&picture, &dots)[..]).into();
                     }
                     if !goes_on(&pause, step, &places).await? {
-                        return Ok(JsValue::NULL);
+                        break;
                     }
                     refiner.step();
                 }
