@@ -126,8 +126,10 @@ class Tiles {
       if (spot) spot.moved = [points[i + 1], points[i + 2]];
     }
     for (const tile of list) tile.point = !tile.opened && spots.has(tile.rank);
-    const most = Math.max(1, ...list.map((tile) => tile.rank));
-    this.descent = { list, spots, first, last, most, opened: opened.size };
+    const ranks = list.map((tile) => Math.log1p(tile.rank)).sort((a, b) => a - b);
+    // Of ranks, whose numbers grow with each level, the logarithms; the few first ones share a color.
+    const [low, high] = [ranks[Math.floor(ranks.length / 50)] ?? 0, ranks.at(-1) ?? 1];
+    this.descent = { list, spots, first, last, low, high, opened: opened.size };
     const depth = element("depth");
     const whole = depth.value === depth.max;
     depth.max = Math.max(1, last - first);
@@ -145,11 +147,11 @@ class Tiles {
   }
 
   color(tile) {
-    const { most, first, last } = this.descent;
+    const { low, high, first, last } = this.descent;
     const hue = document.querySelector("[name=hue]:checked").value;
     if (hue === "kind") return KIND_COLORS[tile.kind];
-    const part = hue === "level" ? (tile.level - first) / Math.max(1, last - first) : Math.log1p(tile.rank) / Math.log1p(most);
-    return ramp(part);
+    if (hue === "level") return ramp((tile.level - first) / Math.max(1, last - first));
+    return ramp((Math.log1p(tile.rank) - low) / Math.max(1e-9, high - low));
   }
 
   draw() {
@@ -163,6 +165,8 @@ class Tiles {
     const scale = side / SIDE;
     context.fillStyle = ground;
     context.fillRect(0, 0, side, side);
+    context.imageSmoothingEnabled = true;
+    context.drawImage(this.paper, 0, 0, side, side);
     if (this.descent) {
       const { list, first } = this.descent;
       const deepest = first + element("depth").valueAsNumber;
@@ -171,7 +175,7 @@ class Tiles {
         for (const tile of shown) {
           this.outline(tile, scale);
           context.fillStyle = this.color(tile);
-          context.globalAlpha = tile.opened || tile.point ? 0.85 : 0.28;
+          context.globalAlpha = tile.opened || tile.point ? 0.9 : 0.34;
           context.fill();
           context.globalAlpha = 1;
           context.strokeStyle = lines;
@@ -181,22 +185,8 @@ class Tiles {
       }
       if (element("show-points").checked) this.points(shown, scale, ratio, style);
     }
-    this.shade(side, style);
     this.mark(scale, ratio, style);
     this.legend();
-  }
-
-  // The painting, over or under the tiles as the colors need it.
-  shade(side, style) {
-    const { context } = this;
-    if (element("show-tiles").checked && this.descent) return;
-    context.save();
-    context.globalCompositeOperation = "destination-over";
-    context.restore();
-    context.imageSmoothingEnabled = true;
-    context.globalAlpha = 0.35;
-    context.drawImage(this.paper, 0, 0, side, side);
-    context.globalAlpha = 1;
   }
 
   outline(tile, scale) {

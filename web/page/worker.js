@@ -5,6 +5,8 @@
 // Pictures with more pixels are made smaller: their dots could not be told from those of the smaller one.
 const MOST_PIXELS = 4e6;
 
+const READ = "PNG, JPEG, Radiance HDR, PFM, and what this browser shows. The program reads more.";
+
 const MODES = { fixed: 0, relaxed: 1, refined: 2 };
 
 let source = null; // what was opened: bytes or pixels, with a name
@@ -59,7 +61,7 @@ async function read(source, settings) {
       } catch (error) {
         if (error.name !== "UnknownFormat") throw error;
         source.pixels = await browserPixels(source.bytes).catch(() => {
-          throw error;
+          throw new Error(`is not a picture that can be read here: ${READ}`);
         });
       }
     }

@@ -137,8 +137,8 @@ test("what cannot be read is said, and what was there stays", async () => {
     assert.ok(said.startsWith(`${name} `) && reason.test(said), said);
     assert.match(await status(), /Still showing photographer\.jpg/);
   };
-  await refused(Buffer.from("dear diary").toString("base64"), "diary.txt", /is not a PNG, JPEG/);
-  await refused("", "nothing.jpg", /is not a PNG/);
+  await refused(Buffer.from("dear diary").toString("base64"), "diary.txt", /is not a picture that can be read here: PNG, JPEG/);
+  await refused("", "nothing.jpg", /is not a picture/);
   await refused(program(PHOTOGRAPH, "png").subarray(0, 20000).toString("base64"), "half.png", /ends early/);
   await refused(png(8, 8, () => 255).toString("base64"), "white.png", /is all white.*White on black/);
   await redrawn(page, () => drop(page, PHOTOGRAPH));

@@ -48,7 +48,7 @@ test("ink opens tiles and brings points, and without ink nothing is looked at", 
   const stroke = await settled(page);
   assert.ok(stroke.points > 20 && stroke.opened > 5, JSON.stringify(stroke));
 
-  await page.fill("#richness", "70");
+  await page.fill("#richness", "85");
   const rich = await settled(page);
   assert.ok(rich.points > 1.5 * stroke.points && rich.opened > stroke.opened);
   assert.deepEqual(page.complaints, []);

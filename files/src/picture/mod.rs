@@ -1,7 +1,7 @@
 //! Reading a photograph into importance: format by content, memory by header, tone by option.
 
 mod aspect;
-#[cfg(test)]
+#[cfg(all(test, feature = "every-format"))]
 mod cases;
 mod cicp;
 mod color;
@@ -9,16 +9,20 @@ mod exif;
 mod format;
 mod jpeg;
 mod limits;
+#[cfg(feature = "every-format")]
 mod openexr;
+mod paint;
 mod pfm;
 mod pixel;
 mod plane;
 mod png;
 mod radiance;
+#[cfg(feature = "every-format")]
 mod raster;
 mod sample;
 mod source;
 pub mod srgb;
+#[cfg(feature = "every-format")]
 mod tiff;
 mod tone;
 
@@ -258,7 +262,7 @@ pub fn of_rgba(
     let toner = Toner::new::<u8>(tone, Colors::Rgb, Alpha::Straight, color::Space::default());
     let mut plane = Plane::new((width, height), Orientation::NoTransforms, f32::NOTHING)?;
     let rgba = rgba.get(..width * height * 4).ok_or(PictureError::Empty)?;
-    raster::paint(&mut plane, width, &toner, rgba, |[byte]| byte);
+    paint::paint(&mut plane, width, &toner, rgba, |[byte]| byte);
     Ok(importance(plane.finish(None)?))
 }
 
@@ -338,9 +342,14 @@ fn decode_source<P: Pixel>(
         Format::Jpeg => jpeg::read(source, wanted),
         Format::Hdr => radiance::read(source, wanted),
         Format::Pfm => pfm::read(source, wanted),
+        #[cfg(feature = "every-format")]
         Format::Tiff => tiff::read(source, wanted),
+        #[cfg(feature = "every-format")]
         Format::OpenExr => openexr::read(source, wanted),
+        #[cfg(feature = "every-format")]
         other => raster::read(other, source, wanted),
+        #[cfg(not(feature = "every-format"))]
+        _ => Err(PictureError::UnknownFormat),
     })?;
     // Directions have no shape of pixels.
     if wanted.radiance { Ok(decoded) } else { aspect::squared(decoded) }

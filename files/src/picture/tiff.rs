@@ -9,8 +9,8 @@ use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult};
 
 use super::color::{self, Space};
+use super::paint::warned;
 use super::plane::{Decoded, Plane};
-use super::raster::warned;
 use super::source::Source;
 use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Toner, Wanted, limits};
 

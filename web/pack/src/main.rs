@@ -8,14 +8,11 @@
 use std::env;
 use std::error::Error;
 use std::fs;
-use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use flate2::Compression;
-use flate2::write::GzEncoder;
 use serde_json::{Map, Value, json};
 use wasm_bindgen_cli_support::Bindgen;
 
@@ -39,13 +36,18 @@ fn pack(wasm: &str, worker: &str, pictures: &[String]) -> Result<String, Box<dyn
     let folder = tempfile::tempdir()?;
     let mut bindgen = Bindgen::new();
     bindgen.input_path(wasm).out_name("engine").no_modules(true)?.typescript(false);
+    bindgen.remove_name_section(true).remove_producers_section(true);
     bindgen.generate(folder.path())?;
     let glue = fs::read_to_string(folder.path().join("engine.js"))?;
     let engine = fs::read(folder.path().join("engine_bg.wasm"))?;
 
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(&engine)?;
-    let compressed = encoder.finish()?;
+    let mut compressed = Vec::new();
+    zopfli::compress(
+        zopfli::Options::default(),
+        zopfli::Format::Gzip,
+        &engine[..],
+        &mut compressed,
+    )?;
     let mut samples = Map::new();
     for picture in pictures {
         let name = Path::new(picture).file_name().ok_or("a picture without a name")?;
