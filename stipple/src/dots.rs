@@ -7,7 +7,7 @@ use twelvefold::estimate::{ExactError, exactly};
 use twelvefold::refine::{ClassRefiner, Classes, ITERATIONS, RefineError, Refiner};
 use twelvefold::{
     Amount, ImageMap, Importance, InvalidPixels, Limits, MapError, Pixels, Placement, Sample,
-    Sampling, SamplingError, StippleMap,
+    Sampling, SamplingError, StippleMap, Tables,
 };
 use twelvefold_files::picture::Picture;
 
@@ -27,6 +27,8 @@ pub struct Wish {
     pub best: bool,
     /// In an order of which each beginning is itself a good set.
     pub ranked: bool,
+    /// What the dots are read from.
+    pub tables: Tables<'static>,
 }
 
 impl Wish {
@@ -238,7 +240,7 @@ fn raw<E>(
             let map = Pixels::new(width, height, importance, invalid)
                 .and_then(ImageMap::new)
                 .map_err(DotsError::Map)?;
-            let placement = Placement::new(map.domain(), wish.seed);
+            let placement = Placement::new_in(map.domain(), wish.seed, wish.tables);
             let dots =
                 exactly(&placement, &map, count, Limits::default()).map_err(DotsError::Exact)?;
             let mut keys = (0u32..).map(f64::from);
@@ -250,7 +252,7 @@ fn raw<E>(
             let map = Pixels::new(width, height, importance, invalid)
                 .and_then(ImageMap::new)
                 .map_err(DotsError::Map)?;
-            let placement = Placement::new(map.domain(), wish.seed);
+            let placement = Placement::new_in(map.domain(), wish.seed, wish.tables);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count));
             stream(&sampling.map_err(DotsError::Sampling)?, &map, wish.ranked, take)
         }
@@ -258,7 +260,7 @@ fn raw<E>(
             let map = Pixels::new(width, height, importance, invalid)
                 .and_then(|pixels| StippleMap::new(pixels, count))
                 .map_err(DotsError::Map)?;
-            let placement = Placement::new(map.domain(), wish.seed);
+            let placement = Placement::new_in(map.domain(), wish.seed, wish.tables);
             let sampling = Sampling::new(&placement, &map, Amount::Points(count))
                 .and_then(Sampling::relaxed)
                 .map_err(DotsError::Sampling)?;

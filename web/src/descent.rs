@@ -7,6 +7,7 @@ use twelvefold::{
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::photograph::plain;
+use crate::tables::tables;
 
 /// What a page can show.
 const LIMITS: Limits = Limits { points: 60_000, tiles: 60_000 };
@@ -30,7 +31,7 @@ impl Descent {
         let map = Pixels::new(side, side, importance, InvalidPixels::Reject)
             .and_then(ImageMap::new)
             .map_err(plain)?;
-        let placement = Placement::new(map.domain(), seed as u64);
+        let placement = Placement::new_in(map.domain(), seed as u64, tables());
         let amount = Amount::Density(density);
         let sampling = Sampling::within(&placement, &map, amount, LIMITS).map_err(plain)?;
         let mut descent = Self::default();

@@ -2,13 +2,14 @@
 //!
 //! `photograph`: from a file or a canvas to a picture. `camera`: from frames. `stipple`: its dots, step by step, so
 //! that the worker hears a stop between two of them. `stippled`: dots as places, and as files. `descent`: the tiles
-//! that a walk opens.
+//! that a walk opens. `tables`: what all points are read from.
 
 mod camera;
 mod descent;
 mod photograph;
 mod stipple;
 mod stippled;
+mod tables;
 
 pub use camera::Camera;
 pub use descent::Descent;

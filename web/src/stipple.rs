@@ -11,6 +11,7 @@ use wasm_bindgen_futures::{JsFuture, future_to_promise};
 
 use crate::photograph::{Photograph, plain};
 use crate::stippled::{Stippled, places_on};
+use crate::tables::tables;
 
 /// The most dots that a page draws.
 const MOST_DOTS: f64 = 1_000_000.0;
@@ -34,7 +35,6 @@ impl Photograph {
     /// `refine` is how often they are moved in [`Mode::Refined`]. Before each time, `pause` is called with how often
     /// they were moved and, if that is `watched`, where they are, as of [`Stippled::places`]; it returns a promise
     /// that says whether to go on; else the dots stay where they are then.
-    #[must_use]
     pub fn stipple(
         &self,
         mode: Mode,
@@ -51,6 +51,7 @@ impl Photograph {
             refine: if mode == Mode::Refined { refine } else { 0 },
             best: false,
             ranked: false,
+            tables: tables(),
         };
         let (picture, tones, black) = (self.picture(), self.tones(), self.black());
         future_to_promise(async move {

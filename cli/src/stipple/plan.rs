@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use glam::DVec2;
+use twelvefold::Tables;
 use twelvefold_files::picture::Picture;
 
 use crate::args::{CentersName, MAX_EXACT, MAX_POINTS, StippleOptions};
@@ -192,6 +193,7 @@ impl Plan {
                 .map_or(dots::default_iterations(count, options.best), usize::from),
             best: options.best,
             ranked: order == Order::Rank,
+            tables: Tables::built_in(),
         };
         Ok(Self {
             look: look(options, format, sheet, mark, pixel / (count / black).sqrt(), &wish),

@@ -108,6 +108,7 @@ impl Toner {
     }
 
     /// The space, for a converter that has seen nothing yet.
+    #[cfg(feature = "every-format")]
     pub(super) fn into_space(self) -> Space {
         self.space
     }
