@@ -71,9 +71,19 @@ class Engine {
   }
 }
 
-function bytesOf(base64) {
-  const text = atob(base64);
-  const bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-  return bytes.buffer;
+// What `web/pack` writes for bytes: their number, and for four of them five digits to the base of 85.
+const DIGITS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?&<>()[]{}@%$#";
+
+function bytesOf(packed) {
+  const values = new Uint8Array(128);
+  for (let i = 0; i < 85; i++) values[DIGITS.charCodeAt(i)] = i;
+  const start = packed.indexOf(" ") + 1;
+  const length = Number(packed.slice(0, start));
+  const words = new DataView(new ArrayBuffer(4 * Math.ceil(length / 4)));
+  for (let i = start, at = 0; i < packed.length; at += 4) {
+    let word = 0;
+    for (const end = i + 5; i < end; i++) word = 85 * word + values[packed.charCodeAt(i)];
+    words.setUint32(at, word);
+  }
+  return words.buffer.slice(0, length);
 }

@@ -59,7 +59,7 @@ class Intake {
       const button = document.createElement("button");
       button.type = "button";
       const picture = document.createElement("img");
-      picture.src = `data:image/jpeg;base64,${PACKED.samples[name]}`;
+      picture.src = URL.createObjectURL(blobOf(name));
       picture.alt = title;
       button.append(picture);
       button.addEventListener("click", () => this.sample(name));
@@ -68,7 +68,10 @@ class Intake {
   }
 
   sample(name) {
-    const blob = new Blob([bytesOf(PACKED.samples[name])], { type: "image/jpeg" });
-    this.onSource({ blob, name });
+    this.onSource({ blob: blobOf(name), name });
   }
+}
+
+function blobOf(name) {
+  return new Blob([bytesOf(PACKED.samples[name])], { type: "image/jpeg" });
 }

@@ -56,11 +56,11 @@ test("dots stay where the picture does, though the camera's sensor is noisy", as
       const before = await dots(page);
       await page.waitForTimeout(1500);
       const now = await dots(page);
-      // The page mirrors: what stays is on the right.
-      const still = before.filter(([x]) => x > 0.55 * 320);
+      // The page mirrors: what stays is on the left.
+      const still = before.filter(([x]) => x < 0.45 * 320);
       const spacing = Math.sqrt((320 * 240) / before.length);
       const stayed = still.filter((dot) => nearest(dot, now) < spacing / 10).length;
-      const moving = before.filter(([x]) => x < 0.4 * 320);
+      const moving = before.filter(([x]) => x > 0.55 * 320);
       const changed = moving.filter((dot) => nearest(dot, now) > spacing / 10).length;
       console.log(`${mode}: ${stayed} of ${still.length} dots stayed, ${changed} of ${moving.length} elsewhere moved`);
       assert.ok(still.length > 1000 && stayed > 0.99 * still.length, `${mode}: ${stayed} of ${still.length}`);
