@@ -165,6 +165,15 @@ class Tiles {
     const scale = side / SIDE;
     context.fillStyle = ground;
     context.fillRect(0, 0, side, side);
+    if (this.descent && element("show-tiles").checked) {
+      // Children do not fill their parents to the edge.
+      context.fillStyle = style.getPropertyValue("--gaps");
+      for (const tile of this.descent.list) {
+        if (!tile.opened) continue;
+        this.outline(tile, scale);
+        context.fill();
+      }
+    }
     context.imageSmoothingEnabled = true;
     context.drawImage(this.paper, 0, 0, side, side);
     if (this.descent) {
@@ -219,7 +228,7 @@ class Tiles {
       const edge = Math.hypot(...tile.edge) * scale;
       const [x, y] = moved && spot.moved ? spot.moved : [spot.x, spot.y];
       context.beginPath();
-      context.arc(x * scale, y * scale, Math.min(5 * ratio, Math.max(1.1 * ratio, edge * 0.13)), 0, 2 * Math.PI);
+      context.arc(x * scale, y * scale, Math.min(5 * ratio, Math.max(0.9 * ratio, edge * 0.12)), 0, 2 * Math.PI);
       context.fill();
     }
   }
