@@ -2,7 +2,7 @@
 "use strict";
 
 // The longer side of a frame, in pixels, and the dots that it gets if nobody says.
-const FRAME_SIDE = 400;
+const FRAME_SIDE = 320;
 const FRAME_DOTS = 6000;
 
 class Camera {
@@ -39,7 +39,7 @@ class Camera {
       this.unplug();
       return this.drawing.trouble(reasonOf(error));
     }
-    element("camera").textContent = "Stop the camera";
+    element("camera").textContent = "Camera off";
     element("camera-row").hidden = false;
     const devices = await navigator.mediaDevices.enumerateDevices();
     element("turn").hidden = devices.filter(({ kind }) => kind === "videoinput").length < 2;
