@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { browser, download, drawn, folder, opened, serve } from "./common.mjs";
+import { FOLDER_ADDRESS, browser, download, drawn, folder, opened, serve } from "./common.mjs";
 
 let server;
 const FAKE = ["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-stream"];
@@ -11,10 +11,10 @@ const FAKE = ["--use-fake-device-for-media-stream", "--use-fake-ui-for-media-str
 before(async () => (server = await serve()));
 after(() => server?.close());
 
-async function filming(args, work) {
+async function filming(args, work, address = server.address) {
   const chromium = await browser(args);
   try {
-    const page = await opened(await chromium.newContext({ permissions: ["camera"] }), server.address);
+    const page = await opened(await chromium.newContext({ permissions: ["camera"] }), address);
     await page.click("#camera");
     await page.waitForFunction(() => /pictures a second/.test(document.getElementById("status").textContent), null, { timeout: 60000 });
     await work(page);
@@ -68,6 +68,9 @@ test("dots stay where the picture does, though the camera's sensor is noisy", as
     }
   });
 });
+
+test("it works from a folder too", () =>
+  filming(FAKE, async (page) => assert.ok((await dots(page)).length > 4500), FOLDER_ADDRESS));
 
 test("without a camera it says so", async () => {
   const chromium = await browser(["--use-fake-ui-for-media-stream"]);

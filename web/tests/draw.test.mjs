@@ -196,6 +196,27 @@ test("a long drawing leaves the page at hand, and can be stopped", async () => {
   await page.close();
 });
 
+test("a worker that does not hear a stop is replaced, and the new one knows the picture", async () => {
+  const page = await fresh();
+  await redrawn(page, () => drop(page, PHOTOGRAPH));
+  await page.fill("#refine", "50");
+  await page.fill("#dots-number", "50000");
+  await page.waitForFunction(() => document.getElementById("progress").value > 0, null, { timeout: 60000 });
+  const [deaf] = page.workers();
+  deaf.evaluate(() => {
+    for (const end = Date.now() + 20000; Date.now() < end; );
+  }).catch(() => {});
+  await page.waitForTimeout(100);
+  await page.click("#stop");
+  await page.waitForFunction(() => !document.body.hasAttribute("aria-busy"), null, { timeout: 10000 });
+  await set(page, "dots-number", 2000);
+  const svg = await download(page, "svg");
+  assert.ok(svg.bytes.equals(program(PHOTOGRAPH, "svg", ["--points", 2000, "--refine", 50])));
+  assert.ok(!page.workers().includes(deaf));
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
 test("zoom: buttons, keys and the wheel; the whole picture again", async () => {
   const page = await fresh();
   const now = () => page.textContent("#zoom-now");
