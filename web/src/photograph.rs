@@ -133,7 +133,7 @@ impl Photograph {
             }));
         }
         let whole = [picture.width, picture.height];
-        let mut picture = reduced(picture, most);
+        let mut picture = picture.reduced(most);
         if tones.gain {
             gain::correct(&mut picture.importance);
         }
@@ -153,32 +153,6 @@ impl Photograph {
     pub(crate) fn black(&self) -> f64 {
         self.black
     }
-}
-
-/// The picture, with squares of pixels averaged so that at most so many are left.
-fn reduced(picture: Picture, most: usize) -> Picture {
-    let Picture { width, height, importance, range, warnings } = picture;
-    let (mut side, mut across, mut down) = (1, width, height);
-    while across * down > most.max(1) {
-        side += 1;
-        (across, down) = (width.div_ceil(side), height.div_ceil(side));
-    }
-    if side == 1 {
-        return Picture { width, height, importance, range, warnings };
-    }
-    let mut means = Vec::with_capacity(across * down);
-    for rows in importance.chunks(width * side) {
-        for x in (0..width).step_by(side) {
-            let end = (x + side).min(width);
-            let (mut sum, mut pixels) = (0.0, 0.0);
-            for row in rows.chunks(width) {
-                sum += row[x..end].iter().copied().map(f64::from).sum::<f64>();
-                pixels += (end - x) as f64;
-            }
-            means.push((sum / pixels) as f32);
-        }
-    }
-    Picture { width: across, height: down, importance: means, range, warnings }
 }
 
 /// An error with a name by which scripts tell it.

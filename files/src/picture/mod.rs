@@ -19,6 +19,7 @@ mod png;
 mod radiance;
 #[cfg(feature = "every-format")]
 mod raster;
+mod reduced;
 mod sample;
 mod source;
 pub mod srgb;
@@ -381,6 +382,27 @@ fn caught<T>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pixels_in_memory_are_read_as_those_of_a_file() {
+        let rgba: Vec<u8> = (0..5 * 3 * 4u32).map(|i| (i * 37 % 256) as u8).collect();
+        let mut file = Vec::new();
+        let mut encoder = ::png::Encoder::new(&mut file, 5, 3);
+        encoder.set_color(::png::ColorType::Rgba);
+        encoder.write_header().unwrap().write_image_data(&rgba).unwrap();
+        for (linear, invert) in [(false, false), (true, false), (false, true), (true, true)] {
+            let tone = Tone { linear, invert, ..Tone::default() };
+            let read = read_bytes(file.clone(), Path::new("a.png"), tone).unwrap();
+            let of_pixels = of_rgba((5, 3), &rgba, tone).unwrap();
+            assert_eq!((read.width, read.height), (of_pixels.width, of_pixels.height));
+            assert_eq!(read.importance, of_pixels.importance);
+        }
+        let tone = Tone::default();
+        assert!(matches!(of_rgba((5, 4), &rgba, tone), Err(PictureError::Empty)));
+        assert!(matches!(of_rgba((0, 3), &rgba, tone), Err(PictureError::Empty)));
+        let text = read_bytes(b"dear diary".to_vec(), Path::new("diary.txt"), tone);
+        assert!(matches!(text, Err(PictureError::UnknownFormat)));
+    }
 
     #[test]
     fn the_total_of_a_large_plane_is_exact_to_a_pixel() {
