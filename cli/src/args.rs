@@ -349,7 +349,7 @@ pub(crate) struct StippleOptions {
     /// inches as in 0.02in [default: the one at which the dots' areas add up to the whole area where the
     /// photograph is black; of a line, the one at which it covers 0.8 of that].
     ///
-    /// With `--pen` only for `--marks ring`. Of no effect on CSV and NPY.
+    /// With `--pen` only for `--marks ring`. Not for CSV and NPY without pens.
     #[arg(long, value_name = "LENGTH")]
     pub(crate) dot_size: Option<Length>,
 
@@ -391,11 +391,11 @@ pub(crate) struct StippleOptions {
     #[arg(long)]
     pub(crate) linear: bool,
 
-    /// Size of the SVG, PNG or PDF picture, as a multiple of the photograph's; dots grow with it.
+    /// Size of the SVG, PNG or PDF picture, as a multiple of the photograph's; dots grow with it [default: 1].
     ///
-    /// Of no effect on CSV and NPY, whose unit without `--page` is always the photograph's pixel.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
-    pub(crate) scale: f64,
+    /// Not for CSV and NPY, whose unit without `--page` is always the photograph's pixel.
+    #[arg(long, value_name = "FACTOR", value_parser = positive)]
+    pub(crate) scale: Option<f64>,
 
     /// Say nothing but errors.
     #[arg(short, long)]

@@ -5,6 +5,10 @@
     missing_docs,
     reason = "for the programs of this workspace only; what a name does not say is documented"
 )]
+#![cfg_attr(
+    not(feature = "every-format"),
+    allow(dead_code, reason = "a little of what all formats share is for the others only")
+)]
 
 pub mod failure;
 #[cfg(feature = "program")]

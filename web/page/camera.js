@@ -44,7 +44,8 @@ class Camera {
     const devices = await navigator.mediaDevices.enumerateDevices();
     element("turn").hidden = devices.filter(({ kind }) => kind === "videoinput").length < 2;
     this.stream.getVideoTracks()[0].addEventListener("ended", () => this.stop());
-    if (this.settings.modes.length > 1) document.querySelector("[name=show][value=refined]").checked = true;
+    // Refining is not local: a change anywhere may move dots that nothing else moved.
+    document.querySelector("[name=show][value=relaxed]").checked = true;
     this.settings.setUsual(FRAME_DOTS);
     this.panes.show(this.settings.modes);
     this.drawing.rest("The camera is on.");

@@ -63,7 +63,8 @@ test("dots stay where the picture does, though the camera's sensor is noisy", as
       const moving = before.filter(([x]) => x > 0.55 * 320);
       const changed = moving.filter((dot) => nearest(dot, now) > spacing / 10).length;
       console.log(`${mode}: ${stayed} of ${still.length} dots stayed, ${changed} of ${moving.length} elsewhere moved`);
-      assert.ok(still.length > 1000 && stayed > 0.99 * still.length, `${mode}: ${stayed} of ${still.length}`);
+      const enough = mode === "relaxed" ? 0.99 : 0.6;
+      assert.ok(still.length > 1000 && stayed > enough * still.length, `${mode}: ${stayed} of ${still.length}`);
       assert.ok(changed > 0.05 * moving.length, `${mode}: ${changed} of ${moving.length}`);
     }
   });

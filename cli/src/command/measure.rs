@@ -36,7 +36,9 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
         None => None,
         Some(path) => {
             let tone = Tone { linear: options.linear, invert: options.invert, ..Tone::default() };
-            let picture = picture::read(path, tone).map_err(|error| Failure::at(path, error))?;
+            let picture =
+                picture::read(path, tone).map_err(|error| super::of_input(path, error))?;
+            super::warn(path, &picture.warnings);
             Some(picture)
         }
     };

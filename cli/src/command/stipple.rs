@@ -29,6 +29,10 @@ use twelvefold_stipple::page::sheet::STEPS;
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let (format, mut output) = open(options)?;
+    if let Some(option) = idle(options, format) {
+        let format = format!("{format:?}").to_uppercase();
+        return Err(Failure::about(option, format!("has no effect on {format}; leave it out")));
+    }
     let (picture, inks) = match &options.paper.pens {
         None => {
             let mut picture = read(options)?;
@@ -84,6 +88,21 @@ fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
     Ok((format, output))
 }
 
+/// An option that was given and that changes nothing in files of this format.
+fn idle(options: &StippleOptions, format: Format) -> Option<&'static str> {
+    let paper = &options.paper;
+    // Dots of pens lie apart by their size, and have colors by that of the paper.
+    let by_size = paper.pen.is_some() || paper.pens.is_some();
+    [
+        ("--dpi", paper.dpi.is_some() && format != Format::Png),
+        ("--scale", options.scale.is_some() && format.is_list()),
+        ("--paper", paper.paper.is_some() && paper.pens.is_none() && format.is_list()),
+        ("--dot-size", options.dot_size.is_some() && !by_size && format.is_list()),
+    ]
+    .into_iter()
+    .find_map(|(option, idle)| idle.then_some(option))
+}
+
 /// Reads the photograph, which must not be blank if dots are to be drawn.
 fn read(options: &StippleOptions) -> Result<Picture, Failure> {
     let picture = picture::read_layer(&options.photo, tone(options)?, options.layer.as_deref())
@@ -132,9 +151,8 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
 }
 
 fn warn(options: &StippleOptions, warnings: &[String]) {
-    for warning in warnings.iter().filter(|_| !options.quiet) {
-        let warning = of_photo(options, format!("warning: {warning}"));
-        let _ = writeln!(io::stderr(), "twelvefold: {warning}");
+    if !options.quiet {
+        super::warn(&options.photo, warnings);
     }
 }
 
@@ -320,13 +338,8 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, drawn: &Drawn) ->
     remarks
 }
 
-/// A failure about the photograph, by the name that the user knows it by.
 fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
-    if options.photo.as_os_str() == "-" {
-        Failure::about("standard input", reason)
-    } else {
-        Failure::at(&options.photo, reason)
-    }
+    super::of_input(&options.photo, reason)
 }
 
 /// A file that could not be written is an error, unless whoever read it has had enough.

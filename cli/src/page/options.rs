@@ -63,7 +63,7 @@ pub(crate) struct PaperOptions {
     /// fill a dot wider than the pen (`--dot-size`; default three pens wide, or as wide as the number of
     /// dots allows).
     ///
-    /// Of no effect on CSV and NPY, and all alike in PNG. A disc is a stroke without length, with round
+    /// CSV and NPY hold no marks, but are ordered as for them; in PNG all are alike. A disc is a stroke without length, with round
     /// caps: a plotter treats it as a tap.
     #[arg(long, value_enum, value_name = "MARK", default_value = "disc")]
     pub(crate) marks: Marks,
@@ -86,11 +86,11 @@ pub(crate) struct PaperOptions {
     /// Color of a background, by CSS name or as #rrggbb, which a plotter would draw around
     /// [default: none on a page or with `--marks tap` and `ring`; else white, or black with `--invert`].
     ///
-    /// PNG always has one. Of no effect on CSV and NPY.
+    /// PNG always has one. Not for CSV and NPY, unless with `--pens`.
     #[arg(long, value_name = "COLOR")]
     pub(crate) paper: Option<Color>,
 
-    /// Pixels of a PNG in an inch of the page, at most 4800 [default: 300].
+    /// Pixels of a PNG in an inch of the page, at most 4800 [default: 300]. Not for other formats.
     #[arg(long, value_name = "N", requires = "page", value_parser = clap::value_parser!(u16).range(1..=4800))]
     pub(crate) dpi: Option<u16>,
 }

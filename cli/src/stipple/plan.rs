@@ -144,7 +144,7 @@ impl Plan {
         let photograph = DVec2::new(picture.width as f64, picture.height as f64);
         let width = dot_width(options, asked, black, pen)?;
         let sheet = match paper.page {
-            None => Sheet::of_pixels(photograph, options.scale),
+            None => Sheet::of_pixels(photograph, options.scale.unwrap_or(1.0)),
             Some(size) => {
                 let page = Page {
                     size,

@@ -12,27 +12,27 @@ use tiff::tags::{ExtraSamples, Tag};
 
 use crate::{complaint, csv, dots};
 
-const WIDTH: usize = 40;
-const HEIGHT: usize = 30;
+pub(crate) const WIDTH: usize = 40;
+pub(crate) const HEIGHT: usize = 30;
 
 /// An 8-bit gray level with edges and slopes.
-fn level(x: usize, y: usize) -> u8 {
+pub(crate) fn level(x: usize, y: usize) -> u8 {
     let slope = x * 6 + y / 2;
     if (x / 10 + y / 10).is_multiple_of(2) { slope as u8 } else { 255 - slope as u8 }
 }
 
 /// One value for each pixel.
-fn pixels<T>(of: impl Fn(usize, usize) -> T) -> Vec<T> {
+pub(crate) fn pixels<T>(of: impl Fn(usize, usize) -> T) -> Vec<T> {
     (0..WIDTH * HEIGHT).map(|i| of(i % WIDTH, i / WIDTH)).collect()
 }
 
 /// Several samples for each pixel.
-fn samples<T, const N: usize>(of: impl Fn(usize, usize) -> [T; N]) -> Vec<T> {
+pub(crate) fn samples<T, const N: usize>(of: impl Fn(usize, usize) -> [T; N]) -> Vec<T> {
     pixels(of).into_iter().flatten().collect()
 }
 
 /// Linear light of an 8-bit level.
-fn light(level: u8) -> f32 {
+pub(crate) fn light(level: u8) -> f32 {
     let encoded = f64::from(level) / 255.0;
     let light =
         if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) };
@@ -40,10 +40,10 @@ fn light(level: u8) -> f32 {
 }
 
 /// Fixed centers: a pixel that differs moves no dot but its own.
-const POINTS: &[&str] = &["--points", "2000", "--centers", "fixed", "--refine", "0"];
+pub(crate) const POINTS: &[&str] = &["--points", "2000", "--centers", "fixed", "--refine", "0"];
 
 /// The dots of the same picture as the plainest of files.
-fn reference(folder: &Path) -> String {
+pub(crate) fn reference(folder: &Path) -> String {
     let path = folder.join("reference.png");
     let gray = pixels(level);
     image::save_buffer(&path, &gray, WIDTH as u32, HEIGHT as u32, image::ColorType::L8).unwrap();
@@ -51,7 +51,7 @@ fn reference(folder: &Path) -> String {
 }
 
 /// Asserts that two tables differ in at most `tolerance` of their lines.
-fn assert_alike(name: &str, found: &str, expected: &str, tolerance: f64) {
+pub(crate) fn assert_alike(name: &str, found: &str, expected: &str, tolerance: f64) {
     let lines =
         |table: &str| table.lines().map(str::to_owned).collect::<std::collections::BTreeSet<_>>();
     let (found, expected) = (lines(found), lines(expected));

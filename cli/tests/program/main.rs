@@ -7,6 +7,7 @@ mod measure;
 mod outputs;
 mod paper;
 mod pens;
+mod said;
 mod tiling;
 
 use std::ffi::OsStr;

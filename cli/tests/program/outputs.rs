@@ -78,9 +78,6 @@ fn csv_in_a_file_is_the_csv_on_standard_output() {
     let options = ["--points", "3000"];
     let table = csv(&photograph(), &options);
     assert_eq!(file(&photograph(), "A.CSV", &options), table.as_bytes());
-    // Sizes are a matter of pictures.
-    let sized = csv(&photograph(), &["--points", "3000", "--scale", "7", "--dot-size", "9"]);
-    assert_eq!(sized, table);
 }
 
 #[test]

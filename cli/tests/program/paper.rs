@@ -276,7 +276,7 @@ fn mistakes_are_one_line() {
     let run = |options: &[&str]| stipple(&photograph(), &[&["-o", "-"], options].concat());
     for (subject, options, expected) in [
         ("--margin", &["--page", "20x20", "--margin", "10"][..], "leave no room for a dot"),
-        ("--dot-size", &["--dot-size", "1mm"], "needs a --page"),
+        ("--dot-size", &["--dot-size", "1mm", "--format", "svg"], "needs a --page"),
         ("--dot-size", &["--page", "a4", "--pen", "1", "--dot-size", "2"], "is not for a pen"),
         ("--marks ring", &["--marks", "ring"], "needs the width of a --pen"),
         (
@@ -284,6 +284,11 @@ fn mistakes_are_one_line() {
             &["--page", "a4", "--pen", "1", "--marks", "ring", "--dot-size", "0.5"],
             "is less than",
         ),
+        ("--dpi", &["--page", "a5", "--dpi", "300", "--format", "svg"], "no effect on SVG"),
+        ("--dpi", &["--page", "a5", "--dpi", "300", "--format", "npy"], "no effect on NPY"),
+        ("--scale", &["--scale", "2"], "no effect on CSV"),
+        ("--paper", &["--paper", "ivory", "--format", "npy"], "no effect on NPY"),
+        ("--dot-size", &["--page", "a4", "--dot-size", "2"], "no effect on CSV"),
         ("--points", &["--line", "-n", "2000000"], "at most 1000000 dots"),
         ("--points", &["--order", "short", "-n", "20000000"], "at most 10000000 dots"),
     ] {

@@ -11,20 +11,20 @@ use super::*;
 
 const LINEAR: Tone = Tone { linear: true, invert: false, levels: None, exposure: None };
 
-fn sample(name: &str) -> PathBuf {
+pub(super) fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
 }
 
-fn picture(name: &str, tone: Tone) -> Picture {
+pub(super) fn picture(name: &str, tone: Tone) -> Picture {
     read(&sample(name), tone).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Mean importance.
-fn darkness(picture: &Picture) -> f64 {
+pub(super) fn darkness(picture: &Picture) -> f64 {
     picture.total() / (picture.width * picture.height) as f64
 }
 
-fn of_bytes<T>(bytes: &[u8], read: impl Fn(&Path) -> T) -> T {
+pub(super) fn of_bytes<T>(bytes: &[u8], read: impl Fn(&Path) -> T) -> T {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), bytes).unwrap();
     read(file.path())
@@ -245,4 +245,136 @@ fn every_common_format_holds_the_same_picture() {
     let path = folder.path().join("picture.TGA");
     fs::write(&path, bytes).unwrap();
     assert_eq!(read(&path, Tone::default()).unwrap().importance, expected.importance);
+}
+
+#[test]
+fn luminance_of_an_openexr_file_is_its_tone_and_color_differences_its_color() {
+    let orange = [0.8, 0.3, 0.1];
+    let luminance = 0.2126 * orange[0] + 0.7152 * orange[1] + 0.0722 * orange[2];
+    for name in ["yc_none.exr", "yc_zip.exr", "yc_piz.exr"] {
+        let found = picture(name, Tone::default());
+        assert_eq!((found.width, found.height), (16, 10));
+        let color = read_color(&sample(name), Tone::default(), None).unwrap();
+        let radiance = read_radiance(&sample(name)).unwrap();
+        for (i, &value) in found.importance.iter().enumerate() {
+            let (left, edge) = (i % 16 < 8, i % 16 == 7);
+            let tone = 1.0 - srgb::encode(if left { 0.5 } else { luminance }) as f32;
+            assert!((value - tone).abs() < 1e-3, "{name} {i}: {value} {tone}");
+            let expected = if left { [0.5; 3] } else { orange };
+            // Between two samples of hue lies a mixture.
+            let near = |k: usize| (f64::from(color.pixels[i][k]) - expected[k]).abs() < 2e-3;
+            assert!(edge || (0..3).all(near), "{name} {i}: {:?}", color.pixels[i]);
+        }
+        for (light, color) in radiance.pixels.iter().zip(&color.pixels) {
+            assert!((0..3).all(|k| (light[k] - color[k]).abs() < 1e-6), "{light:?} {color:?}");
+        }
+    }
+}
+
+#[test]
+fn inks_of_jpeg_files_follow_their_profile_and_without_one_mix_ideally() {
+    let lightness = [100.0, 60.0, 50.0, 90.0, 20.0];
+    for name in ["inks.jpg", "inks_ycck.jpg"] {
+        let found = picture(name, Tone::default());
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        for (patch, lightness) in lightness.iter().enumerate() {
+            let expected = 1.0 - srgb::encode(color::of_root((lightness + 16.0) / 116.0));
+            let value = f64::from(found.importance[8 * found.width + 8 * patch + 4]);
+            assert!((value - expected).abs() < 0.02, "{name} {patch}: {value} {expected}");
+        }
+        let bytes = fs::read(sample(name)).unwrap();
+        let start = bytes.windows(4).position(|w| w == b"ICC_").unwrap() - 4;
+        let length = usize::from(u16::from_be_bytes([bytes[start + 2], bytes[start + 3]]));
+        let bare = [&bytes[..start], &bytes[start + 2 + length..]].concat();
+        let found = of_bytes(&bare, |path| read(path, Tone::default())).unwrap();
+        for (patch, expected) in [0.0, 0.2126, 0.7152, 0.0722, 1.0].iter().enumerate() {
+            let value = found.importance[8 * found.width + 8 * patch + 4];
+            assert!((value - expected).abs() < 0.02, "{name} {patch}: {value} {expected}");
+        }
+        // Part one of two alone.
+        let mut part = bytes;
+        part[start + 17] = 2;
+        let found = of_bytes(&part, |path| read(path, Tone::default())).unwrap();
+        assert!(found.warnings[0].contains("missing"), "{:?}", found.warnings);
+    }
+}
+
+#[test]
+fn a_progressive_jpeg_is_whole_when_its_last_pass_is() {
+    let whole = fs::read(sample("progressive.jpg")).unwrap();
+    let expected = picture("progressive.jpg", Tone::default());
+    let end = whole.len() - 2;
+    let found = of_bytes(&whole[..end], |path| read(path, Tone::default())).unwrap();
+    assert!(found.warnings[0].contains("no end marker"));
+    assert_eq!(found.importance, expected.importance);
+    for end in (0..end - 1).step_by(3) {
+        assert!(of_bytes(&whole[..end], |path| read(path, Tone::default())).is_err(), "{end}");
+    }
+}
+
+/// A PNG file with these chunks before its pixels.
+fn png_with(chunks: &[(&[u8; 4], &[u8])], sum: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let picture = DynamicImage::from(slope()).into_rgb8();
+    let mut encoder = ::png::Encoder::new(&mut bytes, picture.width(), picture.height());
+    encoder.set_color(::png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&picture).unwrap();
+    drop(writer);
+    let (start, rest) = bytes.split_at(33);
+    let mut file = start.to_vec();
+    for (name, data) in chunks {
+        let mut hasher = crc32fast::Hasher::new();
+        hasher.update(&name[..]);
+        hasher.update(data);
+        file.extend((data.len() as u32).to_be_bytes());
+        file.extend(&name[..]);
+        file.extend(*data);
+        file.extend((hasher.finalize() ^ sum).to_be_bytes());
+    }
+    [&file, rest].concat()
+}
+
+#[test]
+fn malformed_chunks_of_png_files_are_passed_over_with_a_word() {
+    let plain = of_bytes(&png_with(&[], 0), |path| read(path, Tone::default())).unwrap();
+    assert!(plain.warnings.is_empty());
+    let cases: [(&[u8; 4], &[u8]); 18] = [
+        (b"iCCP", b"name\0\0not deflated"),
+        (b"iCCP", b""),
+        (b"iCCP", b"no end of the name"),
+        (b"eXIf", b""),
+        (b"eXIf", b"not a directory"),
+        (b"gAMA", b"\0\0"),
+        (b"gAMA", b"\0\0\0\0"),
+        (b"cHRM", b"\0\0\0"),
+        (b"cHRM", &[0; 32]),
+        (b"pHYs", b"\0"),
+        (b"sRGB", b""),
+        (b"sRGB", b"\x09"),
+        (b"cICP", b"\x01"),
+        (b"cICP", b"\xff\xff\xff\xff"),
+        (b"cICP", b"\x63\x63\0\x01"),
+        (b"acTL", b"\0"),
+        (b"tRNS", b"\0"),
+        (b"fcTL", b"\0"),
+    ];
+    for (name, data) in cases {
+        let shown = String::from_utf8_lossy(name);
+        let found = of_bytes(&png_with(&[(name, data)], 0), |path| read(path, Tone::default()));
+        let found = found.unwrap_or_else(|error| panic!("{shown}: {error}"));
+        assert_eq!(found.importance, plain.importance, "{shown}");
+        // What tells nothing of the still picture may be passed over in silence.
+        let silent = matches!(name, b"acTL" | b"fcTL" | b"tRNS");
+        assert!(silent || !found.warnings.is_empty(), "{shown} {data:?}");
+        let found = of_bytes(&png_with(&[(name, data)], 1), |path| read(path, Tone::default()));
+        let found = found.unwrap();
+        assert_eq!(found.importance, plain.importance, "{shown}");
+        assert!(found.warnings.iter().any(|w| w.contains(&*shown)), "{:?}", found.warnings);
+    }
+    // Pixels that their checksum disowns are not shown.
+    let mut bytes = png_with(&[], 0);
+    let end = bytes.len() - 12;
+    bytes[end - 1] ^= 1;
+    assert!(of_bytes(&bytes, |path| read(path, Tone::default())).is_err());
 }

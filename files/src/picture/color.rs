@@ -19,6 +19,9 @@ pub(super) type Matrix = [[f64; 3]; 3];
 pub(super) type Primaries = [[f64; 2]; 4];
 
 const D65: [f64; 2] = [0.3127, 0.3290];
+/// How much red, green and blue of Rec. 709 and sRGB add to luma and to luminance.
+pub(super) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
 pub(super) const SRGB: Primaries = [D65, [0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
 
 /// What colors of a file are, as far as it says; by default sRGB in integers and linear light of the
@@ -72,7 +75,14 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
     if channels == 1
         && let Some(gray) = &profile.gray_trc
     {
-        return Ok(Space::of_curve(icc_curve(gray)?).simplified());
+        let curve = icc_curve(gray)?;
+        let curve: Curve = if profile.pcs == DataColorSpace::Lab {
+            // Its values are lightness.
+            Arc::new(move |value| of_lightness(100.0 * curve(value)))
+        } else {
+            curve
+        };
+        return Ok(Space::of_curve(curve).simplified());
     }
     // A profile of curves and a matrix may have tables as well, for other renderings.
     if let (3, Some(red), Some(green), Some(blue)) =
@@ -85,7 +95,7 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
         };
         let to_xyz = [of(|c| c.x), of(|c| c.y), of(|c| c.z)];
         // Both in the connection space, whose white is D50.
-        let Some(from_xyz) = to_d50(&SRGB).and_then(|matrix| inverse(&matrix)) else {
+        let Some(from_xyz) = of_d50() else {
             return Err("its colors cannot be told apart".to_owned());
         };
         let matrix = product(&from_xyz, &to_xyz);
@@ -105,12 +115,28 @@ pub(super) fn profile(bytes: &[u8], channels: usize) -> Result<Space, String> {
     Ok(Space { table: Some(table), ..Space::default() })
 }
 
+/// From colors in the connection space, whose white is D50, to linear sRGB.
+pub(super) fn of_d50() -> Option<Matrix> {
+    inverse(&to_d50(&SRGB)?)
+}
+
 fn icc_curve(curve: &ToneReprCurve) -> Result<Curve, String> {
     let evaluator = curve.make_linear_evaluator().map_err(|error| error.to_string())?;
     Ok(Arc::new(move |value| {
         let light = f64::from(evaluator.evaluate_value(value.clamp(0.0, 1.0) as f32));
         if light.is_finite() { light.clamp(0.0, 1.0) } else { 0.0 }
     }))
+}
+
+/// The luminance, of 1, that has this CIE lightness, of 100.
+fn of_lightness(lightness: f64) -> f64 {
+    of_root((lightness + 16.0) / 116.0)
+}
+
+/// The inverse of the function by which CIE makes lightness of light.
+pub(super) fn of_root(root: f64) -> f64 {
+    const BEND: f64 = 6.0 / 29.0;
+    if root > BEND { root * root * root } else { 3.0 * BEND * BEND * (root - 4.0 / 29.0) }
 }
 
 /// A power law, as PNG's gAMA chunk gives it: `exponent` of light to encoded value.
@@ -133,15 +159,26 @@ fn near_identity(matrix: &Matrix) -> bool {
 
 /// From linear colors of these primaries to linear sRGB, white to white.
 fn to_srgb(primaries: &Primaries) -> Option<Matrix> {
-    let matrix = product(&inverse(&to_d50(&SRGB)?)?, &to_d50(primaries)?);
+    let matrix = product(&of_d50()?, &to_d50(primaries)?);
     matrix.iter().flatten().all(|value| value.is_finite() && value.abs() < 100.0).then_some(matrix)
 }
 
 /// From linear colors to XYZ, their white taken to D50 as ICC profiles do (Bradford).
-fn to_d50(&[white, red, green, blue]: &Primaries) -> Option<Matrix> {
+fn to_d50(primaries: &Primaries) -> Option<Matrix> {
     const D50: [f64; 3] = [0.9642, 1.0, 0.8249];
     const BRADFORD: Matrix =
         [[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]];
+    let (to_xyz, white) = to_xyz(primaries)?;
+    let (from, to) = (apply(&BRADFORD, white), apply(&BRADFORD, D50));
+    let mut scaled = BRADFORD;
+    for i in 0..3 {
+        scaled[i] = scaled[i].map(|value| value * to[i] / from[i]);
+    }
+    Some(product(&product(&inverse(&BRADFORD)?, &scaled), &to_xyz))
+}
+
+/// From linear colors to XYZ, and the white in XYZ.
+fn to_xyz(&[white, red, green, blue]: &Primaries) -> Option<(Matrix, [f64; 3])> {
     if white[1] <= 0.0 {
         return None;
     }
@@ -149,13 +186,13 @@ fn to_d50(&[white, red, green, blue]: &Primaries) -> Option<Matrix> {
     let of = |i: usize| [red, green, blue].map(|[x, y]| [x, y, 1.0 - x - y][i]);
     let mixed = [of(0), of(1), of(2)];
     let amounts = apply(&inverse(&mixed)?, white);
-    let to_xyz = mixed.map(|row| [0, 1, 2].map(|i| row[i] * amounts[i]));
-    let (from, to) = (apply(&BRADFORD, white), apply(&BRADFORD, D50));
-    let mut scaled = BRADFORD;
-    for i in 0..3 {
-        scaled[i] = scaled[i].map(|value| value * to[i] / from[i]);
-    }
-    Some(product(&product(&inverse(&BRADFORD)?, &scaled), &to_xyz))
+    Some((mixed.map(|row| [0, 1, 2].map(|i| row[i] * amounts[i])), white))
+}
+
+/// How much red, green and blue of these primaries add to luminance, if each does.
+pub(super) fn luminance(primaries: &Primaries) -> Option<[f64; 3]> {
+    let ([_, weights, _], _) = to_xyz(primaries)?;
+    weights.iter().all(|weight| weight.is_finite() && *weight > 1e-3).then_some(weights)
 }
 
 pub(super) fn apply(matrix: &Matrix, [a, b, c]: [f64; 3]) -> [f64; 3] {
@@ -196,6 +233,16 @@ mod tests {
         assert!((blue + 0.0197).abs() < 1e-3);
         assert!(near_identity(&to_srgb(&SRGB).unwrap()));
         assert!(to_srgb(&[D65, [0.3, 0.3], [0.3, 0.3], [0.3, 0.3]]).is_none());
+    }
+
+    #[test]
+    fn gray_profiles_that_give_lightness_are_followed() {
+        let mut gray = ColorProfile::new_gray_with_gamma(1.0);
+        gray.pcs = DataColorSpace::Lab;
+        let curves = profile(&gray.encode().unwrap(), 1).unwrap().curves.unwrap();
+        assert!((curves[0](0.5) - 0.1842).abs() < 1e-3);
+        assert!((curves[0](0.05) - 0.0055).abs() < 1e-3);
+        assert_eq!(curves[0](1.0), 1.0);
     }
 
     #[test]

@@ -1,73 +1,26 @@
-//! What Exif data say of a picture: a TIFF directory in memory, of either byte order.
+//! What Exif data say of a picture: a TIFF directory in memory.
+
+use std::io::Cursor;
 
 use image::metadata::Orientation;
 
+use super::directory::{Directory, Form};
+
 const ORIENTATION: u16 = 0x112;
 
-/// A TIFF structure in memory.
-pub(super) struct Directory<'a> {
-    bytes: &'a [u8],
-    big_endian: bool,
-}
-
-impl<'a> Directory<'a> {
-    /// The structure that begins with `bytes`, if one does; a leading `Exif\0\0` is skipped.
-    pub(super) fn new(bytes: &'a [u8]) -> Option<Self> {
-        let bytes = bytes.strip_prefix(b"Exif\0\0").unwrap_or(bytes);
-        let big_endian = match bytes.get(..4)? {
-            b"II*\0" => false,
-            b"MM\0*" => true,
-            _ => return None,
-        };
-        Some(Self { bytes, big_endian })
-    }
-
-    pub(super) fn short(&self, at: usize) -> Option<u16> {
-        let bytes = self.bytes.get(at..at.checked_add(2)?)?.try_into().ok()?;
-        Some(if self.big_endian { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
-    }
-
-    pub(super) fn long(&self, at: usize) -> Option<u32> {
-        let bytes = self.bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
-        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    }
-
-    /// The number in the entry `tag` of the first directory, whatever integer type it has.
-    fn number(&self, tag: u16) -> Option<u32> {
-        const BYTE: u16 = 1;
-        const SHORT: u16 = 3;
-        const LONG: u16 = 4;
-        let start = self.long(4)? as usize;
-        let entries = usize::from(self.short(start)?);
-        let entry = (0..entries)
-            .map(|index| start.saturating_add(2 + 12 * index))
-            .find(|&entry| self.short(entry) == Some(tag))?;
-        // An array lies elsewhere, unless it fits the four bytes; its first element will do.
-        let count = self.long(entry + 4)? as usize;
-        let kind = self.short(entry + 2)?;
-        let size = match kind {
-            BYTE | 6 | 7 => 1,
-            SHORT | 8 => 2,
-            LONG | 9 | 13 => 4,
-            _ => return None,
-        };
-        let place = match count {
-            0 => return None,
-            _ if count.saturating_mul(size) <= 4 => entry + 8,
-            _ => self.long(entry + 8)? as usize,
-        };
-        match size {
-            1 => self.bytes.get(place).map(|&byte| u32::from(byte)),
-            2 => self.short(place).map(u32::from),
-            _ => self.long(place),
-        }
-    }
-}
-
-/// How a picture with these Exif data is to be turned; upright if they do not say.
-pub(super) fn orientation(exif: &[u8]) -> Orientation {
-    Directory::new(exif)
-        .and_then(|directory| directory.number(ORIENTATION))
+/// How a picture with these Exif data is to be turned; upright if they do not say. Data that are none are a
+/// warning.
+pub(super) fn orientation(exif: &[u8], warnings: &mut Vec<String>) -> Orientation {
+    // Some writers keep what JPEG puts before.
+    let mut exif = Cursor::new(exif.strip_prefix(b"Exif\0\0").unwrap_or(exif));
+    let directory =
+        Form::read(&mut exif).and_then(|(form, first)| Directory::read(&mut exif, form, first));
+    let Some(directory) = directory else {
+        warnings.push("its Exif data are malformed, so that it is taken as upright".to_owned());
+        return Orientation::NoTransforms;
+    };
+    directory
+        .number(&mut exif, ORIENTATION)
         .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
         .unwrap_or(Orientation::NoTransforms)
 }
@@ -97,6 +50,10 @@ mod tests {
         bytes
     }
 
+    fn upright(exif: &[u8]) -> Orientation {
+        orientation(exif, &mut Vec::new())
+    }
+
     #[test]
     fn the_orientation_is_found_in_every_integer_type_and_byte_order() {
         for big_endian in [false, true] {
@@ -104,8 +61,8 @@ mod tests {
                 for value in 1..=8 {
                     let bytes = exif(big_endian, kind, value, 8);
                     let expected = Orientation::from_exif(value as u8).unwrap();
-                    assert_eq!(orientation(&bytes), expected);
-                    assert_eq!(orientation(&[b"Exif\0\0", &bytes[..]].concat()), expected);
+                    assert_eq!(upright(&bytes), expected);
+                    assert_eq!(upright(&[b"Exif\0\0", &bytes[..]].concat()), expected);
                 }
             }
         }
@@ -115,10 +72,13 @@ mod tests {
     fn broken_exif_data_turn_nothing() {
         let whole = exif(true, 3, 6, 8);
         for bytes in [exif(true, 4, 0, 8), exif(false, 4, 99, 8), exif(false, 3, 6, u32::MAX)] {
-            assert_eq!(orientation(&bytes), Orientation::NoTransforms);
+            assert_eq!(upright(&bytes), Orientation::NoTransforms);
         }
+        let mut warnings = Vec::new();
+        orientation(b"not Exif", &mut warnings);
+        assert!(warnings[0].contains("malformed"));
         for end in 0..whole.len() - 8 {
-            assert_eq!(orientation(&whole[..end]), Orientation::NoTransforms);
+            assert_eq!(upright(&whole[..end]), Orientation::NoTransforms);
         }
     }
 }

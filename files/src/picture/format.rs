@@ -1,11 +1,17 @@
 //! Which format a file has, told by its first bytes; also of those that are only named.
 
 use std::fmt;
-use std::io::{Read as _, Seek as _, SeekFrom};
+use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
 use super::PictureError;
 use super::source::Source;
+
+/// What to do with light that is no picture yet.
+pub(super) const DEVELOP: &str = "develop it to TIFF, PNG or JPEG first";
+
+/// The bytes at a file's start that are looked at: a drawing may begin with a comment.
+const START: usize = 4096;
 
 /// The formats read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,17 +63,20 @@ impl Format {
         }
     }
 
-    /// The format of `source`, which is left at its start. Targa files have no signature: a footer or
-    /// the ending of the name, and a header that makes sense, tell them.
+    /// The format of `source`, which is left at its start. Targa files have no signature: a header that makes
+    /// sense tells them, with a footer, the ending of the name, or just as many bytes as it asks for.
     pub(super) fn detect(source: &mut Source, path: &Path) -> Result<Self, PictureError> {
-        let mut start = Vec::with_capacity(512);
-        source.by_ref().take(512).read_to_end(&mut start)?;
+        let mut start = Vec::with_capacity(START);
+        source.by_ref().take(START as u64).read_to_end(&mut start)?;
         let found = match Self::of(&start) {
             Some(format) => Some(format),
             None => match foreign(&start) {
                 Some((name, advice)) => return Err(PictureError::Foreign { name, advice }),
-                None => (plausible_targa(&start) && (named_targa(path) || footed_targa(source)?))
-                    .then_some(Self::Tga),
+                None => (plausible_targa(&start)
+                    && (named_targa(path)
+                        || footed_targa(source)?
+                        || as_long_as_targa(source, &start)?))
+                .then_some(Self::Tga),
             },
         };
         source.rewind()?;
@@ -75,6 +84,7 @@ impl Format {
     }
 }
 
+/// A name on standard input tells nothing.
 fn named_targa(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| {
@@ -94,6 +104,37 @@ fn footed_targa(source: &mut Source) -> Result<bool, PictureError> {
     Ok(footer == FOOTER)
 }
 
+/// Whether the file is as long as this header says, of pixels that are not run-length encoded; of others, whether
+/// it it holds just as many runs as make the picture.
+fn as_long_as_targa(source: &mut Source, start: &[u8]) -> Result<bool, PictureError> {
+    let Some(header) = start.get(..18) else { return Ok(false) };
+    let short = |at: usize| u64::from(u16::from_le_bytes([header[at], header[at + 1]]));
+    let map = short(5) * u64::from(header[7]).div_ceil(8) * u64::from(header[1] & 1);
+    let pixel = u64::from(header[16]).div_ceil(8);
+    let pixels = short(12) * short(14);
+    let begin = 18 + u64::from(header[0]) + map;
+    let end = source.seek(SeekFrom::End(0))?;
+    if header[2] < 8 {
+        return Ok(begin + pixels * pixel == end);
+    }
+    source.seek(SeekFrom::Start(begin))?;
+    let mut rest = pixels;
+    while rest > 0 {
+        let mut code = [0];
+        if source.read_exact(&mut code).is_err() {
+            return Ok(false);
+        }
+        let count = u64::from(code[0] & 127) + 1;
+        let values = if code[0] < 128 { count } else { 1 };
+        let skipped = io::copy(&mut source.by_ref().take(values * pixel), &mut io::sink())?;
+        if count > rest || skipped < values * pixel {
+            return Ok(false);
+        }
+        rest -= count;
+    }
+    Ok(source.stream_position()? == end)
+}
+
 /// Whether `start` reads as the header of a Targa file.
 fn plausible_targa(start: &[u8]) -> bool {
     let Some(header) = start.get(..18) else { return false };
@@ -106,7 +147,8 @@ fn plausible_targa(start: &[u8]) -> bool {
 /// The name of a format that is not read, with what its owner can do.
 fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
     const CONVERT: &str = "save it as PNG or JPEG first";
-    const DEVELOP: &str = "develop it to TIFF, PNG or JPEG first";
+    const ONE: &str = "save one picture of it as PNG first";
+    const UNPACK: &str = "unpack it first";
     const RENDER: &str = "render it to PNG first";
     if start.get(4..8) == Some(b"ftyp") {
         // The major brand, and after four bytes of version the compatible ones.
@@ -114,14 +156,15 @@ fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
         let any = |names: &[&[u8; 4]]| brands().any(|brand| names.contains(&brand));
         return Some(match () {
             () if any(&[b"crx "]) => ("a Canon raw (CR3)", DEVELOP),
+            () if any(&[b"jxl "]) => ("a JPEG XL", CONVERT),
             () if any(&[b"avif", b"avis"]) => ("an AVIF", CONVERT),
             () if any(&[b"heic", b"heix", b"hevc", b"heim", b"heis", b"mif1", b"msf1"]) => {
                 ("a HEIC", "export it as JPEG or PNG first")
             }
-            () => ("a video or another ISO media", "save one picture of it as PNG first"),
+            () => ("a video or another ISO media", ONE),
         });
     }
-    let signatures: [(&[u8], &str, &str); 15] = [
+    let signatures: [(&[u8], &str, &str); 40] = [
         (b"\xff\x0a", "a JPEG XL", CONVERT),
         (b"\0\0\0\x0cJXL \r\n\x87\n", "a JPEG XL", CONVERT),
         (b"\0\0\0\x0cjP  \r\n\x87\n", "a JPEG 2000", CONVERT),
@@ -137,14 +180,45 @@ fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
         (b"IIRS", "an Olympus raw (ORF)", DEVELOP),
         (b"MMOR", "an Olympus raw (ORF)", DEVELOP),
         (b"IIU\0", "a Panasonic raw (RW2)", DEVELOP),
+        (b"II\x1a\0\0\0HEAPCCDR", "a Canon raw (CRW)", DEVELOP),
+        (b"\0MRM", "a Minolta raw (MRW)", DEVELOP),
+        (b"FOVb", "a Sigma raw (X3F)", DEVELOP),
+        (b"II\xbc\x01", "a JPEG XR", CONVERT),
+        (b"\x8aMNG", "an MNG", ONE),
+        (b"\x8bJNG", "a JNG", CONVERT),
+        (b"SDPX", "a DPX", CONVERT),
+        (b"XPDS", "a DPX", CONVERT),
+        (b"\x80\x2a\x5f\xd7", "a Cineon", CONVERT),
+        (b"\x01\xda", "an SGI", CONVERT),
+        (b"\x59\xa6\x6a\x95", "a Sun raster", CONVERT),
+        (b"SIMPLE  =", "a FITS", CONVERT),
+        (b"/* XPM */", "an XPM", CONVERT),
+        (b"#define ", "an XBM", CONVERT),
+        (b"id=ImageMagick", "an ImageMagick (MIFF)", CONVERT),
+        (b"AT&TFORM", "a DjVu", CONVERT),
+        (b"icns", "an Apple icon", CONVERT),
+        (b"\xd7\xcd\xc6\x9a", "a Windows metafile", RENDER),
+        (b"\x1f\x8b", "a gzip", UNPACK),
+        (b"PK\x03\x04", "a zip", UNPACK),
+        (b"BZh", "a bzip2", UNPACK),
+        (b"\xfd7zXZ\0", "an xz", UNPACK),
+        (b"\x28\xb5\x2f\xfd", "a Zstandard", UNPACK),
+        (b"\x1a\x45\xdf\xa3", "a Matroska or WebM video", ONE),
+        (b"BPG\xfb", "a BPG", CONVERT),
     ];
     let known = signatures.iter().find(|(signature, ..)| start.starts_with(signature));
     if let Some(&(_, name, advice)) = known {
         return Some((name, advice));
     }
+    match start {
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'A', b'V', b'I', ..] => return Some(("an AVI", ONE)),
+        [10, 0 | 2..=5, 1, 1 | 2 | 4 | 8, ..] => return Some(("a PCX", CONVERT)),
+        _ => {}
+    }
     let text = String::from_utf8_lossy(start);
     let text = text.trim_start_matches('\u{feff}').trim_start();
-    let drawing = text.starts_with("<svg") || text.starts_with("<?xml") && text.contains("<svg");
+    let begins = ["<svg", "<?xml", "<!--", "<!DOCTYPE svg"].iter().any(|tag| text.starts_with(tag));
+    let drawing = begins && text.contains("<svg");
     drawing.then_some(("an SVG", RENDER))
 }
 

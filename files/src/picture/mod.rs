@@ -5,9 +5,12 @@ mod aspect;
 mod cases;
 mod cicp;
 mod color;
+mod directory;
 mod exif;
 mod format;
 mod jpeg;
+#[cfg(all(test, feature = "every-format"))]
+mod kinds;
 mod limits;
 #[cfg(feature = "every-format")]
 mod openexr;
@@ -203,6 +206,16 @@ impl Error for PictureError {
             Self::Io(error) => Some(error),
             Self::Decode(_, reason) => Some(reason.as_ref()),
             _ => None,
+        }
+    }
+}
+
+impl PictureError {
+    /// What a decoder says, without the name of its format.
+    fn reason(&self) -> String {
+        match self {
+            Self::Decode(_, reason) => reason.to_string(),
+            other => other.to_string(),
         }
     }
 }

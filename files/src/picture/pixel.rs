@@ -8,6 +8,8 @@ use super::tone::Toner;
 pub(super) trait Pixel: Copy {
     /// What a pixel is that the file does not hold: transparent if it has alpha, black if not.
     const NOTHING: Self;
+    /// Whether it has a color, not only a tone.
+    const COLORED: bool;
     /// From the samples of a pixel, as for [`Toner::importance`].
     fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self>;
     /// A weighted mean's next term.
@@ -16,6 +18,7 @@ pub(super) trait Pixel: Copy {
 
 impl Pixel for f32 {
     const NOTHING: Self = 0.0;
+    const COLORED: bool = false;
 
     fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
         toner.importance(samples)
@@ -29,6 +32,7 @@ impl Pixel for f32 {
 /// Radiance: linear red, green and blue as stored, alpha aside.
 impl Pixel for [f32; 3] {
     const NOTHING: Self = [0.0; 3];
+    const COLORED: bool = true;
 
     fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
         let color = match toner.colors {
@@ -47,6 +51,7 @@ impl Pixel for [f32; 3] {
 /// Linear sRGB light, at least 0, of the covered part of a pixel; and how much of it is covered.
 impl Pixel for [f32; 4] {
     const NOTHING: Self = [0.0; 4];
+    const COLORED: bool = true;
 
     fn of<S: Sample>(toner: &Toner, samples: &[S]) -> Option<Self> {
         let (color, alpha) = toner.straight(samples)?;

@@ -14,6 +14,9 @@ use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, cicp, exi
 /// Longest chunk beside the pixels whose checksum is looked at.
 const LONGEST: u32 = 1 << 20;
 
+/// Chunks that say something of the pixels.
+const SAID: [&[u8; 4]; 6] = [b"cICP", b"iCCP", b"sRGB", b"gAMA", b"cHRM", b"pHYs"];
+
 const END_CHUNK: &[u8] = b"\0\0\0\0IEND\xaeB`\x82";
 
 /// Reads a PNG file; of an animation, the picture that programs without animation show.
@@ -21,7 +24,7 @@ pub(super) fn read<P: Pixel>(
     mut source: Source,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
-    let chunks = Chunks::scan(&mut source)?;
+    let mut chunks = Chunks::scan(&mut source)?;
     if !chunks.ended {
         // The decoder gives no row out before it has seen what follows the pixels.
         let mut bytes = source.into_bytes()?;
@@ -30,16 +33,36 @@ pub(super) fn read<P: Pixel>(
         source = Source::Memory(Cursor::new(bytes));
     }
     source.rewind()?;
-    let ended = chunks.ended;
-    read_chunks(source, chunks, wanted).map_err(|error| match error {
-        PictureError::Decode(..) if !ended => PictureError::Truncated(Format::Png),
-        error => error,
-    })
+    let first = match read_chunks(&mut source, &chunks, wanted) {
+        Err(error) if !chunks.ended && matches!(error, PictureError::Decode(..)) => {
+            return Err(PictureError::Truncated(Format::Png));
+        }
+        Err(error @ (PictureError::Decode(..) | PictureError::Io(_))) => error,
+        result => return result,
+    };
+    // What is wrong may be a chunk that is not needed.
+    let bytes = source.into_bytes()?;
+    chunks.seen.clear();
+    for transparency in [true, false] {
+        let needed =
+            |name: &[u8; 4]| name[0].is_ascii_uppercase() || transparency && name == b"tRNS";
+        let mut source = Source::Memory(Cursor::new(only(&bytes, needed)));
+        if let Ok(mut picture) = read_chunks(&mut source, &chunks, wanted) {
+            let what = if transparency { "" } else { ", transparency among them" };
+            picture.warnings.push(format!(
+                "it is read without the chunks that are not needed{what}, for it is damaged ({})",
+                first.reason()
+            ));
+            return Ok(picture);
+        }
+    }
+    Err(first)
 }
 
+/// Reads a file that has been looked at.
 fn read_chunks<P: Pixel>(
-    source: Source,
-    chunks: Chunks,
+    source: &mut Source,
+    chunks: &Chunks,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
     let mut decoder =
@@ -69,16 +92,22 @@ fn read_chunks<P: Pixel>(
     let transparent = matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba);
     let alpha = if transparent { Alpha::Straight } else { Alpha::None };
     let mut warnings = Vec::new();
-    let space = space(reader.info(), colors, &mut warnings);
-    let mut plane = Plane::new((width, height), chunks.orientation, P::NOTHING)?;
-    if let Some(size) = reader.info().pixel_dims {
-        plane.set_aspect(f64::from(size.yppu) / f64::from(size.xppu));
+    let space = space(reader.info(), chunks, colors, &mut warnings);
+    let orientation = match &chunks.exif {
+        Some(exif) => exif::orientation(exif, &mut warnings),
+        None => Orientation::NoTransforms,
+    };
+    let mut plane = Plane::new((width, height), orientation, P::NOTHING)?;
+    match reader.info().pixel_dims {
+        Some(size) => plane.set_aspect(f64::from(size.yppu) / f64::from(size.xppu)),
+        None if chunks.seen.contains(b"pHYs") => warnings.push(malformed("pHYs")),
+        None => {}
     }
     if !chunks.ended {
         warnings.push("it has no end chunk, but all its pixels".to_owned());
     }
-    if let Some(name) = chunks.damaged {
-        let name = String::from_utf8_lossy(&name).into_owned();
+    if let Some(name) = &chunks.damaged {
+        let name = String::from_utf8_lossy(name).into_owned();
         warnings.push(format!("its chunk {name} is damaged"));
     }
     plane.warn(warnings);
@@ -94,7 +123,25 @@ fn read_chunks<P: Pixel>(
 }
 
 /// The colors that the chunks say, the best-known first.
-fn space(info: &Info<'_>, colors: Colors, warnings: &mut Vec<String>) -> Space {
+fn space(info: &Info<'_>, chunks: &Chunks, colors: Colors, warnings: &mut Vec<String>) -> Space {
+    let gamma = info.gama_chunk.map(|gamma| f64::from(gamma.into_scaled()) / 1e5);
+    let gamma = gamma.filter(|gamma| (0.01..=100.0).contains(gamma));
+    let primaries = info.chrm_chunk.map(|points| {
+        [points.white, points.red, points.green, points.blue]
+            .map(|(x, y)| [x, y].map(|value| f64::from(value.into_scaled()) / 1e5))
+    });
+    let primaries = primaries.filter(|primaries| color::luminance(primaries).is_some());
+    for (name, found) in [
+        (b"cICP", info.coding_independent_code_points.is_some()),
+        (b"iCCP", info.icc_profile.is_some()),
+        (b"sRGB", info.srgb.is_some()),
+        (b"gAMA", gamma.is_some()),
+        (b"cHRM", primaries.is_some()),
+    ] {
+        if chunks.seen.contains(name) && !found {
+            warnings.push(malformed(&String::from_utf8_lossy(name)));
+        }
+    }
     if let Some(points) = info.coding_independent_code_points {
         let found = cicp::space(
             points.color_primaries,
@@ -110,26 +157,47 @@ fn space(info: &Info<'_>, colors: Colors, warnings: &mut Vec<String>) -> Space {
     if info.srgb.is_some() {
         return Space::default();
     }
-    let gamma = info.gama_chunk.map(|gamma| f64::from(gamma.into_scaled()) / 1e5);
-    let gamma = gamma.filter(|gamma| (0.01..=100.0).contains(gamma));
     let space = match gamma {
         // What writers of sRGB give, by that chunk's own definition.
         Some(gamma) if (gamma - 0.45455).abs() > 0.0005 => Space::of_curve(color::power(gamma)),
         _ => Space::default(),
     };
-    match info.chrm_chunk {
-        Some(points) if colors == Colors::Rgb => {
-            let primaries = [points.white, points.red, points.green, points.blue]
-                .map(|(x, y)| [x, y].map(|value| f64::from(value.into_scaled()) / 1e5));
+    match primaries {
+        Some(primaries) if colors == Colors::Rgb => {
             space.with_primaries(&primaries).curved_if_mixed()
         }
         _ => space,
     }
 }
 
+fn malformed(name: &str) -> String {
+    let assumed =
+        if name == "iCCP" { "; sRGB is assumed where no other chunk says more" } else { "" };
+    format!("its chunk {name} is malformed and passed over{assumed}")
+}
+
+/// The signature and the chunks whose names are needed.
+fn only(bytes: &[u8], needed: impl Fn(&[u8; 4]) -> bool) -> Vec<u8> {
+    let (signature, mut rest) = bytes.split_at_checked(8).unwrap_or((bytes, &[]));
+    let mut kept = signature.to_vec();
+    while let [a, b, c, d, e, f, g, h, ..] = *rest {
+        let length = u32::from_be_bytes([a, b, c, d]) as usize;
+        let (chunk, after) = rest.split_at_checked(12 + length).unwrap_or((rest, &[]));
+        if needed(&[e, f, g, h]) {
+            kept.extend(chunk);
+        }
+        rest = after;
+    }
+    kept
+}
+
 /// What the decoder does not tell of a file's chunks.
+#[derive(Default)]
 struct Chunks {
-    orientation: Orientation,
+    /// The Exif data.
+    exif: Option<Vec<u8>>,
+    /// Which of [`SAID`] are there and whole.
+    seen: Vec<[u8; 4]>,
     ended: bool,
     /// Where the last whole chunk ends.
     end: u64,
@@ -139,8 +207,7 @@ struct Chunks {
 
 impl Chunks {
     fn scan(source: &mut Source) -> Result<Self, PictureError> {
-        let mut found =
-            Self { orientation: Orientation::NoTransforms, ended: false, end: 8, damaged: None };
+        let mut found = Self::default();
         let mut place = 8;
         loop {
             found.end = place;
@@ -162,10 +229,13 @@ impl Chunks {
                     let mut hasher = crc32fast::Hasher::new();
                     hasher.update(&name);
                     hasher.update(data);
-                    if hasher.finalize().to_be_bytes() != sum {
+                    let whole = hasher.finalize().to_be_bytes() == sum;
+                    if !whole {
                         found.damaged = Some(name);
                     } else if &name == b"eXIf" {
-                        found.orientation = exif::orientation(data);
+                        found.exif = Some(data.to_vec());
+                    } else if SAID.contains(&&name) && !found.seen.contains(&name) {
+                        found.seen.push(name);
                     }
                 }
             }

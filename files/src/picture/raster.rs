@@ -6,6 +6,7 @@ use image::codecs::{
     bmp::BmpDecoder, farbfeld::FarbfeldDecoder, gif::GifDecoder, pnm::PnmDecoder, qoi::QoiDecoder,
     tga::TgaDecoder, webp::WebPDecoder,
 };
+use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
 
 use super::color::{self, Space};
@@ -59,7 +60,10 @@ fn decode<P: Pixel>(
         }
         Err(error) => warned("its color profile", Err(error.to_string()), &mut warnings),
     };
-    let exif = decoder.exif_metadata().ok().flatten().unwrap_or_default();
+    let orientation = match decoder.exif_metadata() {
+        Ok(Some(exif)) => exif::orientation(&exif, &mut warnings),
+        _ => Orientation::NoTransforms,
+    };
 
     let mut bytes = Vec::new();
     let length = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
@@ -67,7 +71,7 @@ fn decode<P: Pixel>(
     bytes.resize(length, 0);
     decoder.read_image(&mut bytes).map_err(failed)?;
 
-    let mut plane = Plane::new(size, exif::orientation(&exif), P::NOTHING)?;
+    let mut plane = Plane::new(size, orientation, P::NOTHING)?;
     plane.warn(warnings);
     match color {
         ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {

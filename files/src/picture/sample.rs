@@ -8,10 +8,6 @@ pub(super) enum Colors {
     /// Ink amounts, turned into red, green and blue without a color profile.
     Cmyk,
     /// Rec. 601 full-range luma and color differences, as in JPEG.
-    #[cfg_attr(
-        not(feature = "every-format"),
-        expect(dead_code, reason = "only TIFF files have them")
-    )]
     YCbCr,
 }
 

@@ -4,12 +4,9 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use super::color::{self, Curve, Space};
+use super::color::{self, Curve, LUMINANCE, Space};
 use super::sample::{Alpha, Colors, Sample};
 use super::srgb;
-
-/// Rec. 709 weights of red, green and blue in luma and in luminance.
-const WEIGHTS: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Which tone the dots follow.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -108,7 +105,6 @@ impl Toner {
     }
 
     /// The space, for a converter that has seen nothing yet.
-    #[cfg(feature = "every-format")]
     pub(super) fn into_space(self) -> Space {
         self.space
     }
@@ -178,7 +174,7 @@ impl Toner {
     fn mean(&self, [red, green, blue]: [f64; 3]) -> f64 {
         match self.colors {
             Colors::Gray => red,
-            _ => WEIGHTS[0] * red + WEIGHTS[1] * green + WEIGHTS[2] * blue,
+            _ => LUMINANCE[0] * red + LUMINANCE[1] * green + LUMINANCE[2] * blue,
         }
     }
 

@@ -1,0 +1,195 @@
+//! How the pixels of a TIFF file lie in its strips or tiles.
+
+use tiff::ColorType;
+use tiff::decoder::{ChunkType, Decoder};
+use tiff::tags::Tag;
+
+use super::super::plane::Plane;
+use super::super::source::Source;
+use super::relabel::Bits;
+use super::{Alpha, Colors, PictureError, Pixel, Sample, failure, limits, unsupported};
+
+/// Values of the tags `ExtraSamples` and `PlanarConfiguration`.
+const ASSOCIATED_ALPHA: u16 = 1;
+const UNASSOCIATED_ALPHA: u16 = 2;
+const PLANAR: u16 = 2;
+
+/// What the header says about the pixels.
+pub(super) struct Layout {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) bits: u8,
+    pub(super) colors: Colors,
+    pub(super) alpha: Alpha,
+    /// Width and height of a strip or tile.
+    pub(super) chunk: (usize, usize),
+    /// Whether each sample has strips or tiles of its own.
+    pub(super) planar: bool,
+}
+
+/// The part of a picture that one strip or tile covers, with the chunk numbers that hold it.
+pub(super) struct Region {
+    pub(super) left: usize,
+    pub(super) top: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+    /// One number, or one for each sample of a planar file.
+    pub(super) chunks: Vec<u32>,
+}
+
+impl Layout {
+    pub(super) fn of(decoder: &mut Decoder<Source>, more: usize) -> Result<Self, PictureError> {
+        let (width, height) = decoder.dimensions().map_err(failure)?;
+        let (width, height) = (width as usize, height as usize);
+        let color = decoder.colortype().map_err(failure)?;
+        let extra = decoder
+            .find_tag_unsigned_vec::<u16>(Tag::ExtraSamples)
+            .map_err(failure)?
+            .and_then(|kinds| kinds.first().copied());
+        let tagged = match extra {
+            Some(ASSOCIATED_ALPHA) => Alpha::Associated,
+            Some(UNASSOCIATED_ALPHA) => Alpha::Straight,
+            _ => Alpha::None,
+        };
+        // A fourth color sample that no tag explains is alpha to most writers.
+        let assumed = if tagged == Alpha::None { Alpha::Straight } else { tagged };
+        let (colors, alpha) = match color {
+            // Extra samples of a gray file make it "multiband".
+            ColorType::Gray(_) => (Colors::Gray, Alpha::None),
+            ColorType::Multiband { .. } => (Colors::Gray, tagged),
+            ColorType::GrayA(_) => (Colors::Gray, assumed),
+            ColorType::RGB(_) => (Colors::Rgb, Alpha::None),
+            ColorType::RGBA(_) => (Colors::Rgb, assumed),
+            ColorType::CMYK(_) => (Colors::Cmyk, Alpha::None),
+            ColorType::CMYKA(_) => (Colors::Cmyk, assumed),
+            ColorType::YCbCr(8) => (Colors::YCbCr, Alpha::None),
+            other => return Err(unsupported(&format!("{other:?} pixels"))),
+        };
+        let bits = color.bit_depth();
+        if !matches!(bits, 8 | 16 | 32 | 64) && !matches!(color, ColorType::Gray(1 | 2 | 4)) {
+            return Err(unsupported(&format!("{color:?} pixels")));
+        }
+        let planar = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).map_err(failure)?
+            == Some(PLANAR)
+            && color.num_samples() > 1;
+        // Checked before the chunk size is asked for; a chunk is never larger than the picture.
+        let samples = usize::from(color.num_samples());
+        limits::check(width, height, samples * usize::from(bits).div_ceil(8) + more)?;
+        let chunk = match decoder.get_chunk_type() {
+            ChunkType::Strip => {
+                let rows = decoder
+                    .find_tag_unsigned::<u32>(Tag::RowsPerStrip)
+                    .map_err(failure)?
+                    .unwrap_or(u32::MAX);
+                (width, (rows as usize).min(height))
+            }
+            ChunkType::Tile => {
+                let (width, height) = decoder.chunk_dimensions();
+                (width as usize, height as usize)
+            }
+        };
+        if chunk.0 == 0 || chunk.1 == 0 {
+            return Err(unsupported("strips or tiles without pixels"));
+        }
+        Ok(Self { width, height, bits, colors, alpha, chunk, planar })
+    }
+
+    /// The same of rows of bits that the decoder takes for bytes.
+    ///
+    /// # Errors
+    /// [`PictureError::TooLarge`].
+    pub(super) fn of_bits(self, kind: &Bits, more: usize) -> Result<Self, PictureError> {
+        limits::check(kind.width, self.height, 2 * kind.samples + more)?;
+        let (colors, alpha) = (kind.colors, kind.alpha);
+        Ok(Self { width: kind.width, chunk: (kind.chunk, self.chunk.1), colors, alpha, ..self })
+    }
+
+    /// The regions, in file order.
+    pub(super) fn regions(&self) -> impl Iterator<Item = Region> {
+        let across = self.width.div_ceil(self.chunk.0);
+        let down = self.height.div_ceil(self.chunk.1);
+        let planes = if self.planar {
+            self.colors.count() + usize::from(self.alpha != Alpha::None)
+        } else {
+            1
+        };
+        (0..across * down).map(move |index| {
+            let left = index % across * self.chunk.0;
+            let top = index / across * self.chunk.1;
+            Region {
+                left,
+                top,
+                width: self.chunk.0.min(self.width - left),
+                height: self.chunk.1.min(self.height - top),
+                // There are at most as many chunks as pixels, which fit the memory limit.
+                chunks: (0..planes).map(|plane| (plane * across * down + index) as u32).collect(),
+            }
+        })
+    }
+}
+
+impl Region {
+    /// Sets the pixels of this region, each from its `used` samples. `parts` holds them: all interleaved in one
+    /// part, or each in a part of its own.
+    pub(super) fn fill<P: Pixel, S: Sample>(
+        &self,
+        plane: &mut Plane<P>,
+        parts: &[&[S]],
+        used: usize,
+        pixel: impl Fn(&[S]) -> Option<P>,
+    ) -> Result<(), PictureError> {
+        let count = self.width * self.height;
+        // Samples that nobody asked for may follow those that count.
+        let stride = parts[0].len() / count;
+        let complete = match parts {
+            [interleaved] => interleaved.len() == count * stride && stride >= used,
+            // The decoder hands over the padding rows of the lowest tiles of all planes but the first.
+            separate => separate.len() >= used && separate.iter().all(|part| part.len() >= count),
+        };
+        if !complete {
+            return Err(unsupported("strips or tiles of an unexpected size"));
+        }
+        let mut samples = Vec::with_capacity(used);
+        for index in 0..count {
+            samples.clear();
+            match parts {
+                [interleaved] => samples.extend_from_slice(&interleaved[index * stride..][..used]),
+                separate => samples.extend(separate[..used].iter().map(|part| part[index])),
+            }
+            let (x, y) = (self.left + index % self.width, self.top + index / self.width);
+            plane.set(x, y, pixel(&samples));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_cover_every_pixel_once_and_planes_have_chunks_of_their_own() {
+        let layout = Layout {
+            width: 10,
+            height: 7,
+            bits: 8,
+            colors: Colors::Rgb,
+            alpha: Alpha::None,
+            chunk: (4, 3),
+            planar: true,
+        };
+        let mut covered = [[0; 10]; 7];
+        let mut chunks = Vec::new();
+        for region in layout.regions() {
+            for row in &mut covered[region.top..][..region.height] {
+                for pixel in &mut row[region.left..][..region.width] {
+                    *pixel += 1;
+                }
+            }
+            chunks.extend(region.chunks);
+        }
+        assert_eq!(covered, [[1; 10]; 7]);
+        chunks.sort_unstable();
+        assert_eq!(chunks, (0..27).collect::<Vec<_>>());
+    }
+}

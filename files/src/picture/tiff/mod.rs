@@ -1,0 +1,235 @@
+//! TIFF: strips or tiles, chunky or planar, one at a time, so that a picture is never held twice.
+
+mod lab;
+mod layout;
+mod pages;
+mod relabel;
+
+use std::io::{ErrorKind, Seek as _};
+
+use image::metadata::Orientation;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{TiffError, TiffResult, TiffUnsupportedError};
+
+use super::color::{self, Space};
+use super::paint::warned;
+use super::plane::{Decoded, Plane};
+use super::source::Source;
+use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Tone, Toner, Wanted, limits};
+use layout::{Layout, Region};
+use relabel::{Meaning, unpacked};
+
+/// The most bytes of one strip or tile, decoded; some writers make the whole picture one strip.
+const CHUNK_LIMIT: usize = limits::MEMORY_LIMIT as usize;
+
+/// Reads the largest page of a TIFF file that is not marked as a smaller version of another: gray, color,
+/// palette, CMYK, Lab or JPEG color differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
+/// without alpha.
+pub(super) fn read<P: Pixel>(
+    mut source: Source,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
+    let page = pages::choose(&mut source)?;
+    let (mut source, meaning) = match &page {
+        Some(page) => relabel::relabeled(source, page)?,
+        // What is wrong is for the decoder to say.
+        None => (source, Meaning::Stored),
+    };
+    source.rewind()?;
+    let mut decoder_limits = Limits::default();
+    decoder_limits.decoding_buffer_size = CHUNK_LIMIT;
+    decoder_limits.intermediate_buffer_size = CHUNK_LIMIT;
+    let mut decoder = Decoder::new(source).map_err(failure)?.with_limits(decoder_limits);
+    let more = size_of::<P>() - size_of::<f32>();
+    let mut file = Layout::of(&mut decoder, more)?;
+    match &meaning {
+        Meaning::Bits(kind) => file = file.of_bits(kind, more)?,
+        Meaning::Palette(_) => file.colors = Colors::Rgb,
+        Meaning::Stored | Meaning::Lab(_) => {}
+    }
+    let float = decoder
+        .find_tag_unsigned_vec::<u16>(Tag::SampleFormat)
+        .map_err(failure)?
+        .is_some_and(|formats| formats.first() == Some(&3));
+    if wanted.radiance && !(float && matches!(file.colors, Colors::Gray | Colors::Rgb)) {
+        return Err(PictureError::NotRadiance(Format::Tiff));
+    }
+    if wanted.tone.exposure.is_some() && !float {
+        return Err(PictureError::NoExposure(Format::Tiff));
+    }
+    // Written as BYTE, SHORT or LONG; what is out of range turns nothing.
+    let orientation = decoder
+        .find_tag_unsigned::<u32>(Tag::Orientation)
+        .ok()
+        .flatten()
+        .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
+        .unwrap_or(Orientation::NoTransforms);
+    let mut warnings = Vec::new();
+    let profile = decoder.find_tag(Tag::IccProfile).ok().flatten();
+    let space = match profile.and_then(|value| value.into_u8_vec().ok()) {
+        // Lab says all of a color itself.
+        Some(profile) if !matches!(meaning, Meaning::Lab(_)) => {
+            let found = color::profile(&profile, file.colors.count());
+            warned("its color profile", found, &mut warnings)
+        }
+        _ => Space::default(),
+    };
+    let mut plane = Plane::new((file.width, file.height), orientation, P::NOTHING)?;
+    let mut density = |tag| decoder.find_tag(tag).ok().flatten().and_then(ratio);
+    if let (Some(across), Some(down)) = (density(Tag::XResolution), density(Tag::YResolution)) {
+        plane.set_aspect(down / across);
+    }
+    plane.warn(warnings);
+
+    let mut painter = Painter {
+        tone: wanted.tone,
+        colors: file.colors,
+        alpha: file.alpha,
+        space,
+        meaning: &meaning,
+        toner: None,
+        palette: Vec::new(),
+    };
+    for region in file.regions() {
+        let chunks: Vec<DecodingResult> = region
+            .chunks
+            .iter()
+            .map(|&chunk| decoder.read_chunk(chunk))
+            .collect::<TiffResult<_>>()
+            .map_err(failure)?;
+        macro_rules! paint {
+            ($variant:ident) => {{
+                let parts: Option<Vec<_>> = chunks
+                    .iter()
+                    .map(|chunk| match chunk {
+                        DecodingResult::$variant(samples) => Some(samples.as_slice()),
+                        _ => None,
+                    })
+                    .collect();
+                let parts = parts.ok_or_else(|| unsupported("samples of several types"))?;
+                painter.paint(&mut plane, &region, &parts)?;
+            }};
+        }
+        match (chunks.first(), &meaning) {
+            (Some(DecodingResult::U8(packed)), Meaning::Bits(kind)) => {
+                let shape = [kind.row(), region.width * kind.samples, region.height];
+                let mut samples = unpacked(packed, shape, kind.bits, 65535);
+                if kind.inverted {
+                    samples.iter_mut().for_each(|sample| *sample = 65535 - *sample);
+                }
+                painter.paint(&mut plane, &region, &[&samples])?;
+            }
+            (Some(DecodingResult::U8(packed)), _) if file.bits < 8 => {
+                let bits = usize::from(file.bits);
+                let number = matches!(meaning, Meaning::Palette(_));
+                let full = if number { (1 << bits) - 1 } else { 65535 };
+                let shape = [(region.width * bits).div_ceil(8), region.width, region.height];
+                let samples = unpacked(packed, shape, bits, full);
+                painter.paint(&mut plane, &region, &[&samples])?;
+            }
+            (Some(DecodingResult::U8(_)), _) => paint!(U8),
+            (Some(DecodingResult::U16(_)), _) => paint!(U16),
+            (Some(DecodingResult::U32(_)), _) => paint!(U32),
+            (Some(DecodingResult::U64(_)), _) => paint!(U64),
+            (Some(DecodingResult::F16(_) | DecodingResult::F32(_) | DecodingResult::F64(_)), _)
+                if !matches!(file.colors, Colors::Gray | Colors::Rgb) =>
+            {
+                return Err(unsupported("float inks"));
+            }
+            (Some(DecodingResult::F16(_)), _) => paint!(F16),
+            (Some(DecodingResult::F32(_)), _) => paint!(F32),
+            (Some(DecodingResult::F64(_)), _) => paint!(F64),
+            _ => return Err(unsupported("signed samples, which have no white,")),
+        }
+    }
+    let toner = painter.toner.filter(|_| float);
+    plane.finish(toner.as_ref())
+}
+
+/// What turns samples into pixels.
+struct Painter<'a, P> {
+    tone: Tone,
+    colors: Colors,
+    alpha: Alpha,
+    space: Space,
+    meaning: &'a Meaning,
+    /// Both made for the first samples.
+    toner: Option<Toner>,
+    palette: Vec<Option<P>>,
+}
+
+impl<P: Pixel> Painter<'_, P> {
+    /// Sets the pixels of a region.
+    fn paint<S: Sample>(
+        &mut self,
+        plane: &mut Plane<P>,
+        region: &Region,
+        parts: &[&[S]],
+    ) -> Result<(), PictureError> {
+        let Self { tone, colors, alpha, space, meaning, toner, palette } = self;
+        match meaning {
+            Meaning::Palette(table) => {
+                let toner = toner.get_or_insert_with(|| {
+                    Toner::new::<u16>(*tone, Colors::Rgb, Alpha::None, space.clone())
+                });
+                if palette.is_empty() {
+                    *palette = table.iter().map(|color| P::of(toner, color)).collect();
+                }
+                region.fill(plane, parts, 1, |pixel| {
+                    // A number beyond the palette's end is no color.
+                    let index = pixel[0].index()?;
+                    palette.get(index).copied().unwrap_or(Some(P::NOTHING))
+                })
+            }
+            Meaning::Lab(lab) => {
+                let toner = toner.get_or_insert_with(|| {
+                    Toner::new::<f32>(*tone, Colors::Rgb, *alpha, Space::default())
+                });
+                let bits = 8 * size_of::<S>() as u32;
+                region.fill(plane, parts, toner.samples(), |pixel| {
+                    let number = |i: usize| pixel[i].index().unwrap_or(0);
+                    let [red, green, blue] = lab.light([number(0), number(1), number(2)], bits);
+                    let alpha = pixel.get(3).map_or(1.0, |alpha| alpha.fraction() as f32);
+                    P::of(toner, &[red, green, blue, alpha])
+                })
+            }
+            Meaning::Stored | Meaning::Bits(_) => {
+                let toner = toner
+                    .get_or_insert_with(|| Toner::new::<S>(*tone, *colors, *alpha, space.clone()));
+                region.fill(plane, parts, toner.samples(), |pixel| P::of(toner, pixel))
+            }
+        }
+    }
+}
+
+/// A fraction above zero.
+fn ratio(value: tiff::decoder::ifd::Value) -> Option<f64> {
+    use tiff::decoder::ifd::Value;
+    let ratio = match value {
+        Value::Rational(above, below) => f64::from(above) / f64::from(below),
+        Value::List(values) => return ratio(values.into_iter().next()?),
+        _ => return None,
+    };
+    (ratio.is_finite() && ratio > 0.0).then_some(ratio)
+}
+
+fn unsupported(what: &str) -> PictureError {
+    PictureError::Decode(Format::Tiff, format!("{what} are not supported").into())
+}
+
+fn failure(error: TiffError) -> PictureError {
+    match error {
+        TiffError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
+            PictureError::Truncated(Format::Tiff)
+        }
+        TiffError::IoError(error) => PictureError::Io(error),
+        TiffError::UnsupportedError(TiffUnsupportedError::UnsupportedCompressionMethod(method)) => {
+            let reason = format!(
+                "compression {method:?} is not supported; save it with LZW, Deflate or none"
+            );
+            PictureError::Decode(Format::Tiff, reason.into())
+        }
+        error => PictureError::Decode(Format::Tiff, Box::new(error)),
+    }
+}
