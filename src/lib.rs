@@ -93,7 +93,7 @@ mod walk;
 pub use domain::{Disc, Domain, DomainError};
 #[cfg(feature = "parallel")]
 pub use emit::Shards;
-pub use emit::{Division, Effort, Filled, Part, Points, Sample};
+pub use emit::{Division, Effort, Filled, Part, PlacedTile, Points, Sample};
 pub use error::SamplingError;
 pub use importance::{
     BilinearMap, Constant, EnvironmentError, EnvironmentMap, EnvironmentSample, Function, ImageMap,

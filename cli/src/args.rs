@@ -10,9 +10,10 @@ use twelvefold::light::{Frame, InfiniteRadiance};
 use twelvefold::tiling::TileType;
 use twelvefold_lab::measure::Window;
 
-use crate::drawing::Format;
-use crate::page::length::Length;
+use crate::format::Format;
 use crate::page::options::PaperOptions;
+use twelvefold_stipple::dots::Centers;
+use twelvefold_stipple::page::length::Length;
 
 /// The most dots that one run draws.
 pub(crate) const MAX_POINTS: u64 = 50_000_000;
@@ -369,9 +370,8 @@ pub(crate) struct StippleOptions {
     /// Where dots lie before they are refined: `relaxed`, where they are evenly spread at every density;
     /// `fixed`, at the centers of tiles, where rows and clumps show, but where more dots only ever add
     /// to fewer.
-    ///
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Centers::Relaxed)]
-    pub(crate) centers: Centers,
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = CentersName::Relaxed)]
+    pub(crate) centers: CentersName,
 
     /// Whether dots allow for the ink that is lost where they overlap: `correct` puts more of them where it
     /// is dark, so that ink covers as much as the photograph asks for; `ignore` puts as many as it asks.
@@ -414,11 +414,21 @@ pub(crate) enum DotGain {
 
 /// Where dots lie before they are refined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Centers {
+pub(crate) enum CentersName {
     /// Moved aside, evenly spread.
     Relaxed,
     /// At the centers of tiles.
     Fixed,
+}
+
+impl CentersName {
+    /// The centers of this name.
+    pub(crate) fn centers(self) -> Centers {
+        match self {
+            Self::Relaxed => Centers::Relaxed,
+            Self::Fixed => Centers::Fixed,
+        }
+    }
 }
 
 /// Reads a gray level.

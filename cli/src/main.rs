@@ -3,7 +3,7 @@
 
 mod args;
 mod command;
-mod drawing;
+mod format;
 mod order;
 mod page;
 mod pens;

@@ -80,6 +80,8 @@ pub(crate) struct Traversal<K> {
     ancestry: K,
     /// Whether the tile's bound is well above its siblings'.
     peak: bool,
+    /// Whether blocks are read where that is sooner; otherwise every tile that may hold points is opened.
+    blocks: bool,
 }
 
 impl<K: Mode> Traversal<K> {
@@ -95,7 +97,13 @@ impl<K: Mode> Traversal<K> {
             batch: Candidates::EMPTY,
             ancestry: K::NONE,
             peak: false,
+            blocks: true,
         }
+    }
+
+    /// The same, tile by tile to the end, as without tables.
+    pub(crate) fn without_blocks(self) -> Self {
+        Self { blocks: false, ..self }
     }
 
     /// Takes the batch's entries from `start` on into `chunk`, as many as fit, and marks the points
@@ -283,7 +291,7 @@ impl<K: Mode> Traversal<K> {
                 KIN_LEVELS.min(tables.depth().max(2)),
                 sampling.scale().threshold(*bound),
             );
-        if near && levels <= usize::from(tables.depth()) {
+        if self.blocks && near && levels <= usize::from(tables.depth()) {
             let end = if constant {
                 count_below(numbering, node, block, levels, limit)
             } else {

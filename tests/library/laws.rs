@@ -1,6 +1,6 @@
 //! Laws that hold for every importance, seed and amount, as properties.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::common::{every_depth, map, noise, points};
 use glam::{DVec2, Vec2};
@@ -39,6 +39,29 @@ fn count_bound(expected: f64) -> f64 {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn every_point_is_the_center_of_one_tile_that_is_not_opened(
+        (map, seed) in maps(), density in 0.1..30.0f64,
+    ) {
+        let placement = Placement::new(map.domain(), seed);
+        let sampling = Sampling::new(&placement, &map, Amount::Density(density)).unwrap();
+        let mut whole = BTreeMap::new();
+        let mut known = true;
+        sampling
+            .opened(|parent, tiles| {
+                known &= parent.is_none_or(|tile| whole.remove(&(tile.rank, tile.level)).is_some());
+                whole.extend(tiles.iter().map(|tile| ((tile.rank, tile.level), tile.center)));
+            })
+            .unwrap();
+        prop_assert!(known, "a tile was opened that nobody had seen");
+        for (rank, at) in points(&sampling).unwrap() {
+            let found: Vec<_> = whole.range((rank, 0)..=(rank, u8::MAX)).collect();
+            prop_assert_eq!(found.len(), 1, "rank {}", rank);
+            prop_assert!(found[0].1.distance(at) < 1e-9 * map.domain().size().max_element());
+        }
+
+    }
 
     #[test]
     fn raising_the_importance_never_removes_a_point(

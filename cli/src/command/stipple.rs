@@ -14,16 +14,17 @@ use twelvefold_files::picture::{self, Levels, Picture, Tone};
 use twelvefold_files::progress::Progress;
 
 use crate::args::{DotGain, StippleOptions};
-use crate::drawing::{Drawing, DrawingError, Format, Layer};
+use crate::format::Format;
 use crate::order;
 use crate::page::apart::keep_apart;
-use crate::page::color::Color;
 use crate::page::options::Order;
-use crate::page::sheet::STEPS;
 use crate::pens::{Inks, InksError, Pens};
-use crate::stipple::dots::{self, Count, DotsError, Wish};
-use crate::stipple::gain;
 use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
+use twelvefold_stipple::dots::{self, Count, DotsError, Wish};
+use twelvefold_stipple::drawing::{Drawing, DrawingError, Layer};
+use twelvefold_stipple::gain;
+use twelvefold_stipple::page::color::Color;
+use twelvefold_stipple::page::sheet::STEPS;
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {

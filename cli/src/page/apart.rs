@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::sheet::{STEPS, Sheet};
 use crate::order::Grid;
+use twelvefold_stipple::page::sheet::{STEPS, Sheet};
 
 /// The most rounds in which dots that are too near push each other away. At 0.8 of black, which nothing denser
 /// is asked of, 17,842 dots on 40 x 40 mm need some 90.
@@ -85,7 +85,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::page::sheet::{DotWidth, Page};
+    use twelvefold_stipple::page::sheet::{DotWidth, Page};
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(48))]

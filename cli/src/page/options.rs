@@ -1,10 +1,9 @@
 //! The options of paper and pens.
 
 use clap::{Args, ValueEnum};
+use twelvefold_stipple::page::color::Color;
+use twelvefold_stipple::page::length::{Length, PageSize, margin};
 
-use super::color::Color;
-use super::length::{Length, PageSize, margin};
-use super::marks::Marks;
 use crate::pens::{Pens, Shadows};
 
 /// Options for paper, pens and printers.
@@ -102,6 +101,17 @@ fn share(text: &str) -> Result<f64, String> {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("not a number from 0 to 1".to_owned()),
     }
+}
+
+/// A kind of mark, as the command line has it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Marks {
+    /// A filled circle.
+    Disc,
+    /// The shortest stroke: pen down, pen up.
+    Tap,
+    /// A circle that the pen draws, and within it as many as fill a dot wider than the pen.
+    Ring,
 }
 
 /// An order of dots.

@@ -6,7 +6,7 @@ use twelvefold::refine::{Classes, RefineError};
 use twelvefold_files::picture::ColorPicture;
 
 use super::{Pen, Separation, Shadows};
-use crate::page::color::Color;
+use twelvefold_stipple::page::color::Color;
 
 /// The most bytes for what all pens draw of a picture: one gibibyte.
 const MEMORY_LIMIT: usize = 1 << 30;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::MAX_PENS;
-use crate::page::color::Color;
+use twelvefold_stipple::page::color::Color;
 
 /// A pen: what its layer is called, and its ink.
 #[derive(Debug, Clone, PartialEq)]

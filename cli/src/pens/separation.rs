@@ -17,7 +17,7 @@
 use clap::ValueEnum;
 
 use super::{MAX_PENS, Pen};
-use crate::page::color::Color;
+use twelvefold_stipple::page::color::Color;
 
 /// Nodes of the lattice a side. The nodes are even in the square root of light, close to how the eye
 /// divides it; at 33 the greatest error of interpolation is below .01 of light (see the tests).

@@ -1,6 +1,3 @@
-//! From a picture's importance to dots: how many, where, and how large.
+//! What the options ask of a drawing.
 
-pub(crate) mod budget;
-pub(crate) mod dots;
-pub(crate) mod gain;
 pub(crate) mod plan;

@@ -4,17 +4,20 @@ use std::f64::consts::PI;
 use std::fmt;
 
 use glam::DVec2;
+use twelvefold::Tables;
 use twelvefold_files::picture::Picture;
 
-use super::budget::{default_count, default_dot_size};
-use super::dots::{self, Count, STREAMED, Wish};
 use crate::args::{MAX_EXACT, MAX_POINTS, StippleOptions};
-use crate::drawing::{Format, Look};
-use crate::page::color::Color;
-use crate::page::length::Length;
-use crate::page::marks::{Mark, Marks};
+use crate::format::Format;
+use crate::page::options::Marks;
 use crate::page::options::Order;
-use crate::page::sheet::{DotWidth, NoRoom, Page, Sheet};
+use twelvefold_stipple::budget::{default_count, default_dot_size};
+use twelvefold_stipple::dots::{self, Count, STREAMED, Wish};
+use twelvefold_stipple::drawing::Look;
+use twelvefold_stipple::page::color::Color;
+use twelvefold_stipple::page::length::Length;
+use twelvefold_stipple::page::mark::Mark;
+use twelvefold_stipple::page::sheet::{DotWidth, NoRoom, Page, Sheet};
 
 /// The share of a black area that a pen draws over. Discs that do not overlap cover at most 0.907 of an area;
 /// at 0.8 even ones lie 1.065 of their width apart.
@@ -183,13 +186,14 @@ impl Plan {
                 Some(count) => Count::Exactly(count as usize),
                 None => Count::About(count),
             },
-            centers: options.centers,
+            centers: options.centers.centers(),
             seed: options.seed,
             refine: options
                 .refine
                 .map_or(dots::default_iterations(count, options.best), usize::from),
             best: options.best,
             ranked: order == Order::Rank,
+            tables: Tables::built_in(),
         };
         Ok(Self {
             look: look(options, format, sheet, mark, pixel / (count / black).sqrt(), &wish),
@@ -296,10 +300,6 @@ fn look(
     // What a pen draws gets nothing around it that a pen would draw too.
     let on_screen = !sheet.is_page() && matches!(mark, Mark::Disc(_) | Mark::Line(_));
     let photo = &options.photo;
-    let dots = match wish.count {
-        Count::About(count) => format!("about {count}"),
-        Count::Exactly(count) => count.to_string(),
-    };
     Look {
         sheet,
         mark,
@@ -310,11 +310,7 @@ fn look(
         linear: options.linear || options.paper.pens.is_some(),
         named: options.paper.pens.is_some(),
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
-        description: format!(
-            "Stippled with {dots} dots by twelvefold {}, seed {}",
-            env!("CARGO_PKG_VERSION"),
-            options.seed
-        ),
+        description: wish.description(),
     }
 }
 

@@ -4,8 +4,11 @@ use std::fmt;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
+use super::PictureError;
 use super::source::Source;
-use super::{PictureError, tiff};
+
+/// What to do with light that is no picture yet.
+pub(super) const DEVELOP: &str = "develop it to TIFF, PNG or JPEG first";
 
 /// The bytes at a file's start that are looked at: a drawing may begin with a comment.
 const START: usize = 4096;
@@ -144,7 +147,6 @@ fn plausible_targa(start: &[u8]) -> bool {
 /// The name of a format that is not read, with what its owner can do.
 fn foreign(start: &[u8]) -> Option<(&'static str, &'static str)> {
     const CONVERT: &str = "save it as PNG or JPEG first";
-    const DEVELOP: &str = tiff::DEVELOP;
     const ONE: &str = "save one picture of it as PNG first";
     const UNPACK: &str = "unpack it first";
     const RENDER: &str = "render it to PNG first";

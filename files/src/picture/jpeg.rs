@@ -8,8 +8,8 @@ use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 
 use super::color::{self, Space};
+use super::paint::{paint, warned};
 use super::plane::{Decoded, Plane};
-use super::raster::{paint, warned};
 use super::source::Source;
 use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, exif, limits};
 

@@ -1,7 +1,7 @@
 //! Reading a photograph into importance: format by content, memory by header, tone by option.
 
 mod aspect;
-#[cfg(test)]
+#[cfg(all(test, feature = "every-format"))]
 mod cases;
 mod cicp;
 mod color;
@@ -9,19 +9,24 @@ mod directory;
 mod exif;
 mod format;
 mod jpeg;
-#[cfg(test)]
+#[cfg(all(test, feature = "every-format"))]
 mod kinds;
 mod limits;
+#[cfg(feature = "every-format")]
 mod openexr;
+mod paint;
 mod pfm;
 mod pixel;
 mod plane;
 mod png;
 mod radiance;
+#[cfg(feature = "every-format")]
 mod raster;
+mod reduced;
 mod sample;
 mod source;
 pub mod srgb;
+#[cfg(feature = "every-format")]
 mod tiff;
 mod tone;
 
@@ -34,8 +39,9 @@ use std::path::Path;
 pub use format::Format;
 pub use tone::{Levels, Tone};
 
+use image::metadata::Orientation;
 use pixel::Pixel;
-use plane::Decoded;
+use plane::{Decoded, Plane};
 use sample::{Alpha, Colors, Sample};
 use source::Source;
 use tone::Toner;
@@ -245,12 +251,42 @@ pub fn read(path: &Path, tone: Tone) -> Result<Picture, PictureError> {
 /// # Errors
 /// [`PictureError`].
 pub fn read_layer(path: &Path, tone: Tone, layer: Option<&str>) -> Result<Picture, PictureError> {
-    let decoded = decode(path, Wanted { tone, layer, radiance: false })?;
+    Ok(importance(decode(path, Wanted { tone, layer, radiance: false })?))
+}
+
+/// Reads a photograph as [`read`] does, from the bytes of a file of this name.
+///
+/// # Errors
+/// [`PictureError`].
+pub fn read_bytes(bytes: Vec<u8>, name: &Path, tone: Tone) -> Result<Picture, PictureError> {
+    let wanted = Wanted { tone, layer: None, radiance: false };
+    Ok(importance(decode_source(Source::of_bytes(bytes)?, name, wanted)?))
+}
+
+/// The picture of encoded sRGB pixels, red, green, blue and coverage from 0 to 255 each, row by row from the top.
+///
+/// # Errors
+/// [`PictureError::Empty`] without pixels or with fewer than `width` · `height`, [`PictureError::TooLarge`] beyond
+/// the memory limit.
+pub fn of_rgba(
+    (width, height): (usize, usize),
+    rgba: &[u8],
+    tone: Tone,
+) -> Result<Picture, PictureError> {
+    let toner = Toner::new::<u8>(tone, Colors::Rgb, Alpha::Straight, color::Space::default());
+    let mut plane = Plane::new((width, height), Orientation::NoTransforms, f32::NOTHING)?;
+    let rgba = rgba.get(..width * height * 4).ok_or(PictureError::Empty)?;
+    paint::paint(&mut plane, width, &toner, rgba, |[byte]| byte);
+    Ok(importance(plane.finish(None)?))
+}
+
+/// The picture of decoded importance.
+fn importance(decoded: Decoded<f32>) -> Picture {
     let Decoded { width, height, pixels, range, warnings, .. } = decoded;
-    let mut importance: Vec<f32> = pixels;
+    let mut importance = pixels;
     // Resampling rounds.
     importance.iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
-    Ok(Picture { width, height, importance, range, warnings })
+    Picture { width, height, importance, range, warnings }
 }
 
 /// Reads the colors of a photograph, upright and in shape; of `tone` only the exposure
@@ -295,7 +331,15 @@ pub fn read_radiance(path: &Path) -> Result<Radiance, PictureError> {
 
 /// Reads the file at `path`.
 fn decode<P: Pixel>(path: &Path, wanted: Wanted<'_>) -> Result<Decoded<P>, PictureError> {
-    let mut source = Source::open(path)?;
+    decode_source(Source::open(path)?, path, wanted)
+}
+
+/// Reads what a file of this name holds.
+fn decode_source<P: Pixel>(
+    mut source: Source,
+    path: &Path,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
     let format = Format::detect(&mut source, path)?;
     let float = matches!(format, Format::Hdr | Format::OpenExr | Format::Pfm | Format::Tiff);
     if wanted.radiance && !float {
@@ -312,9 +356,14 @@ fn decode<P: Pixel>(path: &Path, wanted: Wanted<'_>) -> Result<Decoded<P>, Pictu
         Format::Jpeg => jpeg::read(source, wanted),
         Format::Hdr => radiance::read(source, wanted),
         Format::Pfm => pfm::read(source, wanted),
+        #[cfg(feature = "every-format")]
         Format::Tiff => tiff::read(source, wanted),
+        #[cfg(feature = "every-format")]
         Format::OpenExr => openexr::read(source, wanted),
+        #[cfg(feature = "every-format")]
         other => raster::read(other, source, wanted),
+        #[cfg(not(feature = "every-format"))]
+        _ => Err(PictureError::UnknownFormat),
     })?;
     // Directions have no shape of pixels.
     if wanted.radiance { Ok(decoded) } else { aspect::squared(decoded) }
@@ -346,6 +395,27 @@ fn caught<T>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pixels_in_memory_are_read_as_those_of_a_file() {
+        let rgba: Vec<u8> = (0..5 * 3 * 4u32).map(|i| (i * 37 % 256) as u8).collect();
+        let mut file = Vec::new();
+        let mut encoder = ::png::Encoder::new(&mut file, 5, 3);
+        encoder.set_color(::png::ColorType::Rgba);
+        encoder.write_header().unwrap().write_image_data(&rgba).unwrap();
+        for (linear, invert) in [(false, false), (true, false), (false, true), (true, true)] {
+            let tone = Tone { linear, invert, ..Tone::default() };
+            let read = read_bytes(file.clone(), Path::new("a.png"), tone).unwrap();
+            let of_pixels = of_rgba((5, 3), &rgba, tone).unwrap();
+            assert_eq!((read.width, read.height), (of_pixels.width, of_pixels.height));
+            assert_eq!(read.importance, of_pixels.importance);
+        }
+        let tone = Tone::default();
+        assert!(matches!(of_rgba((5, 4), &rgba, tone), Err(PictureError::Empty)));
+        assert!(matches!(of_rgba((0, 3), &rgba, tone), Err(PictureError::Empty)));
+        let text = read_bytes(b"dear diary".to_vec(), Path::new("diary.txt"), tone);
+        assert!(matches!(text, Err(PictureError::UnknownFormat)));
+    }
 
     #[test]
     fn the_total_of_a_large_plane_is_exact_to_a_pixel() {

@@ -6,8 +6,8 @@ use image::metadata::Orientation;
 use png::{BitDepth, ColorType, DecodingError, Info, Transformations};
 
 use super::color::{self, Space};
+use super::paint::{paint, warned};
 use super::plane::{Decoded, Plane};
-use super::raster::{paint, warned};
 use super::source::Source;
 use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, cicp, exif, limits};
 

@@ -10,9 +10,10 @@ use image::metadata::Orientation;
 use image::{ColorType, ImageDecoder, ImageError, Limits};
 
 use super::color::{self, Space};
+use super::paint::{paint, warned};
 use super::plane::{Decoded, Plane};
 use super::source::Source;
-use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Toner, Wanted, exif, limits};
+use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, exif, limits};
 
 /// Reads a file of this format; of an animation, its first frame.
 pub(super) fn read<P: Pixel>(
@@ -86,39 +87,6 @@ fn decode<P: Pixel>(
         }
     }
     plane.finish(None)
-}
-
-/// The space found, or the default with a warning that says so.
-pub(super) fn warned(
-    what: &str,
-    found: Result<Space, String>,
-    warnings: &mut Vec<String>,
-) -> Space {
-    found.unwrap_or_else(|reason| {
-        warnings.push(format!("{what} cannot be used ({reason}); sRGB is assumed"));
-        Space::default()
-    })
-}
-
-/// Sets every pixel of `plane` from `bytes`, whose samples are `SIZE` bytes each.
-pub(super) fn paint<P: Pixel, S: Sample, const SIZE: usize>(
-    plane: &mut Plane<P>,
-    width: usize,
-    toner: &Toner,
-    bytes: &[u8],
-    sample: fn([u8; SIZE]) -> S,
-) {
-    let channels = toner.samples();
-    // The most channels are four: red, green, blue and alpha, or inks.
-    let mut pixel = [sample([0; SIZE]); 4];
-    for (y, row) in bytes.chunks_exact(width * channels * SIZE).enumerate() {
-        for (x, stored) in row.chunks_exact(channels * SIZE).enumerate() {
-            for (value, &bytes) in pixel.iter_mut().zip(stored.as_chunks::<SIZE>().0) {
-                *value = sample(bytes);
-            }
-            plane.set(x, y, P::of(toner, &pixel[..channels]));
-        }
-    }
 }
 
 fn failure(format: Format, error: ImageError) -> PictureError {

@@ -60,6 +60,7 @@ sample!(u8, float: false, fraction: |s| f64::from(s) / 255.0, index: |s| Some(us
 sample!(u16, float: false, fraction: |s| f64::from(s) / 65535.0, index: |s| Some(usize::from(s)));
 sample!(u32, float: false, fraction: |s| f64::from(s) / f64::from(u32::MAX), index: |_| None);
 sample!(u64, float: false, fraction: |s| s as f64 / u64::MAX as f64, index: |_| None);
+#[cfg(feature = "every-format")]
 sample!(exr::prelude::f16, float: true, fraction: |s| s.to_f64(), index: |_| None);
 sample!(f32, float: true, fraction: f64::from, index: |_| None);
 sample!(f64, float: true, fraction: |s| s, index: |_| None);

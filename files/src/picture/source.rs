@@ -31,6 +31,15 @@ impl Source {
         Ok(Self::File(BufReader::new(File::open(path)?)))
     }
 
+    /// What a file would hold; at most the memory limit.
+    pub(super) fn of_bytes(bytes: Vec<u8>) -> Result<Self, PictureError> {
+        let length = bytes.len() as u64;
+        if length > limits::MEMORY_LIMIT {
+            return Err(PictureError::TooLong { bytes: length });
+        }
+        Ok(Self::Memory(Cursor::new(bytes)))
+    }
+
     /// All that a stream gives.
     fn collect(stream: impl Read) -> Result<Self, PictureError> {
         let mut bytes = Vec::new();

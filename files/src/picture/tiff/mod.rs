@@ -12,11 +12,9 @@ use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult, TiffUnsupportedError};
 
-pub(super) use pages::DEVELOP;
-
 use super::color::{self, Space};
+use super::paint::warned;
 use super::plane::{Decoded, Plane};
-use super::raster::warned;
 use super::source::Source;
 use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Tone, Toner, Wanted, limits};
 use layout::{Layout, Region};

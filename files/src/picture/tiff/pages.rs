@@ -5,6 +5,7 @@ use std::io::{Read as _, Seek as _, SeekFrom};
 use super::super::directory::{Directory, Form};
 use super::super::source::Source;
 use super::{PictureError, unsupported};
+use crate::picture::format::DEVELOP;
 
 /// Pictures looked at, and those within one of them.
 const MOST_PAGES: usize = 1000;
@@ -31,9 +32,6 @@ const FILTERED: [u64; 2] = [32803, 34892];
 
 /// How cameras of Sony, Nikon and Pentax press what lies behind the filter.
 const PRESSED: [u64; 3] = [32767, 34713, 65535];
-
-/// What to do with light that is no picture yet.
-pub(crate) const DEVELOP: &str = "develop it to TIFF, PNG or JPEG first";
 
 /// Finds the largest picture that is not marked as a smaller version of another or as a mask; `None` if the
 /// first one cannot be read.

@@ -1,0 +1,15 @@
+//! Photographs as dots, from the picture to the file: what the program and the page share.
+//!
+//! `budget`: how many dots, and how large. `gain`: what ink covers. `dots`: where they go. `page`: what they are
+//! drawn on. `drawing`: the files.
+
+#![allow(
+    missing_docs,
+    reason = "for the doors of this workspace only; what a name does not say is documented"
+)]
+
+pub mod budget;
+pub mod dots;
+pub mod drawing;
+pub mod gain;
+pub mod page;
