@@ -2,9 +2,11 @@
 
 use glam::DVec2;
 use pyo3::prelude::*;
-use twelvefold::estimate::exactly_relaxed;
+use twelvefold::estimate::{exactly, exactly_relaxed};
 use twelvefold::refine::Refiner;
-use twelvefold::{Amount, InvalidPixels, Limits, Pixels, Placement, Sampling, StippleMap};
+use twelvefold::{
+    Amount, ImageMap, Importance, InvalidPixels, Limits, Pixels, Placement, Sampling, StippleMap,
+};
 
 use crate::arrays::Image;
 use crate::tone::{self, Tone};
@@ -24,6 +26,7 @@ pub(crate) fn stipple<'py>(
     refine: &Bound<'py, PyAny>,
     best: &Bound<'py, PyAny>,
     exact: &Bound<'py, PyAny>,
+    relaxed: &Bound<'py, PyAny>,
     seed: &Bound<'py, PyAny>,
     invert: &Bound<'py, PyAny>,
     linear: &Bound<'py, PyAny>,
@@ -39,6 +42,7 @@ pub(crate) fn stipple<'py>(
     }
     let seed = arguments::seed(seed)?;
     let exact = arguments::flag("exact", exact)?;
+    let relaxed = arguments::flag("relaxed", relaxed)?;
     let tone = Tone {
         linear: arguments::flag("linear", linear)?,
         invert: arguments::flag("invert", invert)?,
@@ -52,11 +56,7 @@ pub(crate) fn stipple<'py>(
         return Err(error::value(format!("image is {blank}, which leaves no place for dots")));
     }
     let dots = work::run(py, move |stop| {
-        let mut dots = if exact {
-            exact_dots(copied(&image)?, n, seed)?
-        } else {
-            dots(copied(&image)?, n, seed)?
-        };
+        let mut dots = unrefined(copied(&image)?, n, exact, relaxed, seed)?;
         if refine > 0 {
             refined(&image, &mut dots, refine, best, stop)?;
         }
@@ -73,27 +73,42 @@ fn copied((width, height, pixels): &Image) -> PyResult<Image> {
     Ok((*width, *height, copy))
 }
 
-/// Exactly n dots, relaxed, in the order of the walk.
-fn exact_dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
-    let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
-        .and_then(|pixels| StippleMap::new(pixels, n as f64))
-        .map_err(error::map)?;
-    let placement = Placement::new(map.domain(), seed);
-    let made = exactly_relaxed::<DVec2, _>(&placement, &map, n, Limits::default());
-    Ok(made.map_err(error::exact)?.iter().map(|point| point.position).collect())
+/// Dots as the sampling gives them: exactly n, or about as many in the order of the walk.
+fn unrefined(
+    image: Image,
+    n: usize,
+    exact: bool,
+    relaxed: bool,
+    seed: u64,
+) -> PyResult<Vec<DVec2>> {
+    let (width, height, pixels) = image;
+    let pixels = Pixels::new(width, height, pixels, InvalidPixels::Reject).map_err(error::map)?;
+    if relaxed {
+        let map = StippleMap::new(pixels, n as f64).map_err(error::map)?;
+        let placement = Placement::new(map.domain(), seed);
+        if exact {
+            let made = exactly_relaxed(&placement, &map, n, Limits::default());
+            return Ok(made.map_err(error::exact)?.iter().map(|dot| dot.position).collect());
+        }
+        let sampling = Sampling::new(&placement, &map, Amount::Points(n as f64));
+        received(&sampling.and_then(Sampling::relaxed).map_err(error::sampling)?)
+    } else {
+        let map = ImageMap::new(pixels).map_err(error::map)?;
+        let placement = Placement::new(map.domain(), seed);
+        if exact {
+            // In progressive order.
+            let made = exactly(&placement, &map, n, Limits::default());
+            return Ok(made.map_err(error::exact)?.iter().map(|dot| dot.position).collect());
+        }
+        let sampling = Sampling::new(&placement, &map, Amount::Points(n as f64));
+        received(&sampling.map_err(error::sampling)?)
+    }
 }
 
-/// About n dots, relaxed, in the order of the walk.
-fn dots((width, height, pixels): Image, n: usize, seed: u64) -> PyResult<Vec<DVec2>> {
-    let n = n as f64;
-    let map = Pixels::new(width, height, pixels, InvalidPixels::Reject)
-        .and_then(|pixels| StippleMap::new(pixels, n))
-        .map_err(error::map)?;
-    let placement = Placement::new(map.domain(), seed);
-    let sampling = Sampling::new(&placement, &map, Amount::Points(n)).map_err(error::sampling)?;
-    let sampling = sampling.relaxed().map_err(error::sampling)?;
+/// All dots of a sampling.
+fn received<I: Importance + Sync>(sampling: &Sampling<'_, I>) -> PyResult<Vec<DVec2>> {
     let mut shards = twelvefold::Shards::<DVec2>::new();
-    shards.sample(&sampling).map_err(error::sampling)?;
+    shards.sample(sampling).map_err(error::sampling)?;
     let mut dots = Vec::new();
     let bytes = shards.len().saturating_mul(size_of::<DVec2>());
     dots.try_reserve_exact(shards.len()).map_err(|_| error::memory(bytes))?;

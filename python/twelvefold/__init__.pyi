@@ -28,6 +28,7 @@ def stipple(
     refine: SupportsIndex = 10,
     best: bool = False,
     exact: bool = False,
+    relaxed: bool = True,
     seed: SupportsIndex = 0,
     invert: bool = False,
     linear: bool = False,

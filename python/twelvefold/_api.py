@@ -12,6 +12,7 @@ def stipple(
     refine=10,
     best=False,
     exact=False,
+    relaxed=True,
     seed=0,
     invert=False,
     linear=False,
@@ -38,6 +39,10 @@ def stipple(
         every other: the best there is, in about four times the time.
     exact : bool
         Exactly n dots, instead of about as many.
+    relaxed : bool
+        Begin with dots that are evenly spread at every density. Without it they begin at the centers of
+        tiles, where more only ever add to fewer; with ``exact=True, refine=0`` they then come in an order
+        of which each beginning is itself a good stippling.
     seed : int, 0 to 2**64 - 1
         Chooses which of many equally good arrangements is made.
     invert : bool
@@ -81,7 +86,7 @@ def stipple(
     True
     """
     return _native.stipple(
-        image, n, refine, best, exact, seed, invert, linear, black, white, gamma
+        image, n, refine, best, exact, relaxed, seed, invert, linear, black, white, gamma
     )
 
 
