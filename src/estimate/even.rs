@@ -2,9 +2,8 @@
 
 use alloc::vec::Vec;
 
-use super::exact::ExactError;
+use super::exact::{ExactError, admitted};
 use crate::emit::Sample;
-use crate::error::SamplingError;
 use crate::importance::Importance;
 use crate::placement::Placement;
 use crate::position::Position;
@@ -47,11 +46,7 @@ pub fn exactly_relaxed<P: Position, I: Importance>(
     if n == 0 {
         return Ok(Vec::new());
     }
-    let wanted = n as f64;
-    if wanted > limits.points as f64 {
-        let limit = limits.points;
-        return Err(SamplingError::TooManyPoints { expected: wanted, limit }.into());
-    }
+    let wanted = admitted(n, limits)?;
     let bytes = n.saturating_mul(size_of::<Sample<P>>());
     let mut points = Vec::new();
     points.try_reserve_exact(n).map_err(|_| ExactError::Memory { bytes })?;

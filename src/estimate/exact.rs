@@ -94,11 +94,7 @@ pub fn exactly<I: Importance>(
     if n == 0 {
         return Ok(Vec::new());
     }
-    let wanted = n as f64;
-    if wanted > limits.points as f64 {
-        let limit = limits.points;
-        return Err(SamplingError::TooManyPoints { expected: wanted, limit }.into());
-    }
+    let wanted = admitted(n, limits)?;
     let bytes = n.saturating_mul(size_of::<Weighted>() + size_of::<Candidate>());
     let memory = |_| ExactError::Memory { bytes };
     let mut points = Vec::new();
@@ -168,6 +164,15 @@ pub fn exactly<I: Importance>(
         let growth = (wanted + margin) / (found as f64 + 1.0);
         density *= growth.clamp(1.25, 64.0);
     }
+}
+
+/// `n`, if the limits allow so many.
+pub(super) fn admitted(n: usize, limits: Limits) -> Result<f64, SamplingError> {
+    let (expected, limit) = (n as f64, limits.points);
+    if expected > limit as f64 {
+        return Err(SamplingError::TooManyPoints { expected, limit });
+    }
+    Ok(expected)
 }
 
 /// All points of the sampling, about `n`, with their keys. `bytes`: what to say if there is no room.

@@ -1,8 +1,7 @@
 //! Other ways to stipple, as rivals: weighted Voronoi relaxation, its linked variant that finds the number
 //! of dots by itself, and error diffusion.
 //!
-//! Written for comparison: exact enough that finer sampling changes no figure by a percent, and no
-//! faster than that takes.
+//! Written for comparison: to be right, and not to be fast.
 
 mod dithering;
 mod linked;

@@ -33,7 +33,7 @@ impl Cell {
 
 /// Samples a pixel has on a side, so that a dot's cell has two hundred where the photograph is darkest. With sixty
 /// a dot on average, cells there have some twenty, and centroids stick to samples: a hundred rounds of Lloyd's method
-/// then leave a tone error half as large again.
+/// then leave a tone error a third larger.
 fn fineness(darkness: &Darkness<'_>, dots: usize) -> usize {
     let darkest = darkness.values.iter().fold(0.0_f32, |most, &value| most.max(value));
     let pixels = darkness.sum() / f64::from(darkest) / dots as f64;
