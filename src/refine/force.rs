@@ -14,6 +14,7 @@ const GAIN: f32 = (REACH / PULL) * (REACH / PULL) * (REACH / PULL) * (REACH / PU
 /// sharpening draws dots across an edge; where the ground is flat right up to it there is nothing to sharpen, and
 /// the dots are missing there. Discs on grounds 1.4 to 10 times lighter, hard and smoothed, had up to 1.2 % too many
 /// dots and their grounds .1 to 1.5 % too few; now .5 % at most, mostly below .2. With 1.3 or 1.5 others are off by as much.
+/// It costs 8 % of an iteration at 60,000 dots.
 pub(super) const FLAT_PULL: f32 = 1.4;
 /// So many of the nine pixels about a place are of the lightest or the darkest tone among them on flat ground,
 /// also where a smoothed edge passes. With fewer, photographs have flat ground as well, and lose contrast.
