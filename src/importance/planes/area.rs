@@ -4,23 +4,23 @@ use core::ops::Range;
 
 /// Columns and rows of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::importance) struct Area {
-    pub(in crate::importance) x: Range<usize>,
-    pub(in crate::importance) y: Range<usize>,
+pub(crate) struct Area {
+    pub(crate) x: Range<usize>,
+    pub(crate) y: Range<usize>,
 }
 
 impl Area {
     /// The whole image.
-    pub(in crate::importance) fn whole((width, height): (usize, usize)) -> Self {
+    pub(crate) fn whole((width, height): (usize, usize)) -> Self {
         Self { x: 0..width, y: 0..height }
     }
 
-    pub(in crate::importance) fn size(&self) -> (usize, usize) {
+    pub(crate) fn size(&self) -> (usize, usize) {
         (self.x.len(), self.y.len())
     }
 
     /// The number of its pixels, saturating.
-    pub(in crate::importance) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.x.len().saturating_mul(self.y.len())
     }
 
@@ -31,7 +31,7 @@ impl Area {
     }
 
     /// With so many pixels more on each side, where the image has them.
-    pub(in crate::importance) fn grown(&self, by: usize, (width, height): (usize, usize)) -> Self {
+    pub(crate) fn grown(&self, by: usize, (width, height): (usize, usize)) -> Self {
         let grown = |range: &Range<usize>, size: usize| {
             range.start.saturating_sub(by)..range.end.saturating_add(by).min(size)
         };
@@ -51,7 +51,7 @@ impl Area {
 /// The squares of which an image is made, those at its right and lower border cut off there. Whatever is
 /// added up begins at the corner of a page, so that no number depends on what part of the image is looked at.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::importance) struct Pages {
+pub(crate) struct Pages {
     side: usize,
     image: (usize, usize),
 }

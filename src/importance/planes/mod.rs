@@ -27,7 +27,7 @@ mod sums;
 
 use alloc::vec::Vec;
 
-pub(super) use self::area::Area;
+pub(crate) use self::area::Area;
 use self::area::Pages;
 use self::spread::Spread;
 use self::sums::{Cut, Sums};
@@ -111,7 +111,8 @@ impl Planes {
                 let around = surroundings(&sums, [x, y], value.into(), scales);
                 let i = toned.index(x, y);
                 // A tone of 0 is a pixel of 0, and the other way round.
-                tones[i] = if value > 0.0 { (around.tone as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
+                tones[i] =
+                    if value > 0.0 { (around.tone as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
                 halves[i] = around.half as f32;
                 if core.x.contains(&x) && core.y.contains(&y) {
                     phase[core.index(x, y)] = around.phase as f32;
