@@ -33,8 +33,8 @@ use self::spread::Spread;
 use self::sums::{Cut, Sums};
 use super::pixels::{MapError, filled, with_room};
 
-/// The side of a page, in reaches of a box: its sums, which reach beyond it, then have at most 2.25 times its pixels.
-const PAGE_REACHES: usize = 4;
+/// The side of a page, in reaches of a box: its sums, which reach beyond it, then have at most 1.6 times its pixels.
+const PAGE_REACHES: usize = 8;
 
 /// Sides of pages are multiples of so many pixels.
 const LEAST_PAGE: usize = 16;
@@ -121,32 +121,23 @@ impl Planes {
             });
         }
 
-        // What each pixel gives to a unit of tone in its box.
-        let mut shares = filled(0.0f64, shared.len())?;
+        // What each pixel gives to the tones in its box.
+        let mut spread = Spread::new(*pages, core)?;
         for page in pages.of(shared) {
             sums.measure((&tones, toned), &page.grown(*reach, *whole), *whole)?;
             for_each_pixel(&page.and(shared), |x, y| {
                 let i = toned.index(x, y);
                 let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
                 if rest != 0.0 {
-                    let [sum, _] = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
-                    shares[shared.index(x, y)] = if sum > 0.0 { rest / sum } else { 0.0 };
+                    let cut = Cut::about([x, y], halves[i].into(), *whole);
+                    let [sum, _] = sums.over(&cut);
+                    if sum > 0.0 {
+                        spread.add(&cut, rest / sum);
+                    }
                 }
             });
         }
-
-        let mut spread = Spread::new(pages.side().min(whole.0.max(whole.1)))?;
-        for page in pages.of(core) {
-            spread.begin(page.clone());
-            for_each_pixel(&page.grown(*reach, *whole), |x, y| {
-                let share = shares[shared.index(x, y)];
-                if share != 0.0 {
-                    let half = halves[toned.index(x, y)];
-                    spread.add(&Cut::about([x, y], half.into(), *whole), share);
-                }
-            });
-            spread.finish(&mut tones, toned);
-        }
+        spread.finish(&mut tones, toned);
         if core != toned {
             tones = cropped(&tones, toned, core)?;
         }

@@ -50,17 +50,18 @@ impl Sums {
             self.sums = with_room(len)?;
         }
         self.sums.clear();
-        self.sums.resize(stride, [0.0; 2]);
-        for (above, y) in part.y.clone().enumerate() {
+        self.sums.resize(len, [0.0; 2]);
+        let mut rows = self.sums.chunks_exact_mut(stride);
+        let mut above = rows.next().unwrap_or_default();
+        for (y, sums) in part.y.clone().zip(rows) {
             let row = &pixels[area.index(part.x.start, y)..][..width];
             let mut sum = [0.0; 2];
-            self.sums.push(sum);
-            for (x, pixel) in row.iter().enumerate() {
+            for ((to, above), pixel) in sums[1..].iter_mut().zip(&above[1..]).zip(row) {
                 let value = f64::from(*pixel);
                 sum = [sum[0] + value, sum[1] + value * value];
-                let above = self.sums[above * stride + x + 1];
-                self.sums.push([above[0] + sum[0], above[1] + sum[1]]);
+                *to = [above[0] + sum[0], above[1] + sum[1]];
             }
+            above = sums;
         }
         self.image = image;
         self.corner = [part.x.start, part.y.start];
