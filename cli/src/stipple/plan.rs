@@ -13,7 +13,7 @@ use crate::page::options::Marks;
 use crate::page::options::Order;
 use twelvefold_stipple::budget::{default_count, default_dot_size};
 use twelvefold_stipple::dots::{self, Count, STREAMED, Wish};
-use twelvefold_stipple::drawing::Look;
+use twelvefold_stipple::drawing::{Look, Piece};
 use twelvefold_stipple::page::color::Color;
 use twelvefold_stipple::page::length::Length;
 use twelvefold_stipple::page::mark::Mark;
@@ -301,6 +301,7 @@ fn look(
     let on_screen = !sheet.is_page() && matches!(mark, Mark::Disc(_) | Mark::Line(_));
     let photo = &options.photo;
     Look {
+        piece: Piece::WHOLE,
         sheet,
         mark,
         spacing,
