@@ -26,6 +26,8 @@ mod raster;
 mod reduced;
 mod sample;
 mod scan;
+#[cfg(all(test, feature = "every-format"))]
+mod scans;
 mod source;
 pub mod srgb;
 #[cfg(feature = "every-format")]

@@ -193,14 +193,15 @@ impl Region {
             let row = (y - self.top) * self.width;
             for x in wanted.columns.clone() {
                 let index = row + x - self.left;
-                samples.clear();
-                match parts {
-                    [interleaved] => {
-                        samples.extend_from_slice(&interleaved[index * stride..][..used])
+                let value = match parts {
+                    [interleaved] => pixel(&interleaved[index * stride..][..used]),
+                    separate => {
+                        samples.clear();
+                        samples.extend(separate[..used].iter().map(|part| part[index]));
+                        pixel(&samples)
                     }
-                    separate => samples.extend(separate[..used].iter().map(|part| part[index])),
-                }
-                plane.set(x, y, pixel(&samples));
+                };
+                plane.set(x, y, value);
             }
         }
         Ok(())

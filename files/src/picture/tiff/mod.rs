@@ -8,7 +8,7 @@ mod relabel;
 use std::io::{ErrorKind, Seek as _};
 
 use image::metadata::Orientation;
-use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult, TiffUnsupportedError};
 
@@ -23,6 +23,9 @@ use relabel::{Meaning, unpacked};
 
 /// The most bytes of one strip or tile, decoded; some writers make the whole picture one strip.
 const CHUNK_LIMIT: usize = limits::MEMORY_LIMIT as usize;
+
+/// The number of this compression.
+const JPEG: u16 = 7;
 
 /// Reads the largest page of a TIFF file that is not marked as a smaller version of another: gray, color,
 /// palette, CMYK, Lab or JPEG color differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
@@ -48,6 +51,10 @@ pub(super) struct Page<P> {
     pub(super) warnings: Vec<String>,
     float: bool,
     painter: Painter<P>,
+    /// Where each strip or tile ends, if these are JPEG files, which a decoder fills up that end early.
+    ends: Vec<u64>,
+    /// Of the file.
+    length: u64,
 }
 
 impl<P: Pixel> Page<P> {
@@ -59,6 +66,7 @@ impl<P: Pixel> Page<P> {
             // What is wrong is for the decoder to say.
             None => (source, Meaning::Stored),
         };
+        let length = source.length()?;
         source.rewind()?;
         let mut decoder_limits = Limits::default();
         decoder_limits.decoding_buffer_size = CHUNK_LIMIT;
@@ -111,7 +119,9 @@ impl<P: Pixel> Page<P> {
             toner: None,
             palette: Vec::new(),
         };
-        Ok(Self { decoder, layout, orientation, aspect, warnings, float, painter })
+        let compression = decoder.find_tag_unsigned::<u16>(Tag::Compression).map_err(failure)?;
+        let ends = if compression == Some(JPEG) { ends(&mut decoder)? } else { Vec::new() };
+        Ok(Self { decoder, layout, orientation, aspect, warnings, float, painter, ends, length })
     }
 
     /// Pixels across and down, upright, as they are stored.
@@ -133,6 +143,10 @@ impl<P: Pixel> Page<P> {
         let size = (self.layout.width, self.layout.height);
         let mut plane = Plane::of_window(size, self.orientation, P::NOTHING, window)?;
         for region in self.layout.regions(&plane.stored().clone()) {
+            let end = |chunk: &u32| self.ends.get(*chunk as usize);
+            if region.chunks.iter().filter_map(end).any(|&end| end > self.length) {
+                return Err(PictureError::Truncated(Format::Tiff));
+            }
             let chunks: Vec<DecodingResult> = region
                 .chunks
                 .iter()
@@ -143,6 +157,21 @@ impl<P: Pixel> Page<P> {
         }
         plane.finish(self.painter.toner.as_ref().filter(|_| self.float))
     }
+}
+
+/// Where each strip or tile ends.
+fn ends(decoder: &mut Decoder<Source>) -> Result<Vec<u64>, PictureError> {
+    let (offsets, lengths) = match decoder.get_chunk_type() {
+        ChunkType::Strip => (Tag::StripOffsets, Tag::StripByteCounts),
+        ChunkType::Tile => (Tag::TileOffsets, Tag::TileByteCounts),
+    };
+    let mut of = |tag| decoder.get_tag_u64_vec(tag).map_err(failure);
+    let (offsets, lengths) = (of(offsets)?, of(lengths)?);
+    Ok(offsets
+        .into_iter()
+        .zip(lengths)
+        .map(|(start, length)| start.saturating_add(length))
+        .collect())
 }
 
 /// What turns samples into pixels.
