@@ -75,6 +75,7 @@ pub mod export;
 pub mod importance;
 pub mod light;
 pub mod mesh;
+mod mosaic;
 mod placement;
 mod position;
 #[doc(hidden)]
@@ -99,6 +100,7 @@ pub use importance::{
     BilinearMap, Constant, EnvironmentError, EnvironmentMap, EnvironmentSample, Function, ImageMap,
     Importance, InvalidPixels, MapError, PixelData, PixelView, Pixels, Probed, StippleMap,
 };
+pub use mosaic::{Cell, Mosaic};
 pub use placement::Placement;
 pub use position::{Coordinate, Position, Scalar};
 pub use sampling::{Amount, Limits, Sampling};

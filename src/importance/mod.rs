@@ -25,8 +25,10 @@ pub(crate) use environment::{importance_of, luminance};
 pub use function::Function;
 pub use image::ImageMap;
 pub use pixels::{InvalidPixels, MapError, Pixels};
+pub(crate) use planes::Area;
 pub use probed::Probed;
 pub use stipple::StippleMap;
+pub(crate) use stipple::Whole;
 pub use view::{PixelData, PixelView};
 
 use glam::DVec2;

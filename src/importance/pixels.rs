@@ -51,6 +51,11 @@ pub enum MapError {
         /// Its value.
         value: f32,
     },
+    /// The mean of an image that is not in one piece is NaN, infinite or negative.
+    InvalidMean {
+        /// The mean.
+        mean: f64,
+    },
     /// A dirty rectangle or patch does not lie within the map.
     OutsideMap,
     /// The memory for the map is not to be had.
@@ -74,6 +79,9 @@ impl fmt::Display for MapError {
             }
             Self::InvalidPixel { x, y, value } => {
                 write!(f, "pixel ({x}, {y}) is {value}: importance must be finite and not negative")
+            }
+            Self::InvalidMean { mean } => {
+                write!(f, "a mean importance of {mean}: it must be finite and not negative")
             }
             Self::OutsideMap => f.write_str("the rectangle does not lie within the map"),
             Self::Memory { bytes } => write!(f, "the map needs {bytes} bytes of memory"),
@@ -167,6 +175,20 @@ impl Pixels {
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.sum / self.values.len() as f64
+    }
+
+    /// The sum of each row.
+    #[must_use]
+    pub fn row_sums(&self) -> &[f64] {
+        &self.row_sums
+    }
+
+    /// The mean pixel of an image from the sums of all its rows, which may have come in several pieces: to the bit
+    /// the [`mean`](Self::mean) of the image in one piece. 0 without pixels.
+    #[must_use]
+    pub fn mean_of_rows(width: usize, row_sums: &[f64]) -> f64 {
+        let pixels = width.saturating_mul(row_sums.len());
+        if pixels > 0 { sum(row_sums) / pixels as f64 } else { 0.0 }
     }
 }
 

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 
 use glam::DVec2;
 
-use super::planes::{Planes, Scales};
+use super::planes::{Area, Layout, Planes, Scales};
 use super::raster::{Grid, RUN, SAME_SIDE};
 use super::{
     BilinearMap, ImageMap, Importance, InvalidPixels, MapError, Pixels, constrain_each, retreat,
@@ -19,6 +19,11 @@ use crate::position::Scalar;
 
 /// No box grows past this many spacings of the mean importance.
 const LARGEST_SPACING: f64 = 1.5;
+
+/// No point is moved by more than so many spacings of the mean importance, so that a part of the image knows
+/// all points that may come into it. What is moved by half its local spacing has an importance below a thousandth
+/// of the mean.
+const FARTHEST: f64 = 16.0;
 
 /// The plane of details holds 0 … 255.
 const FULL_DETAIL: f64 = 1.0 / 255.0;
@@ -53,11 +58,53 @@ const PIXEL_BORDER: f64 = 1.0 / 256.0;
 /// texture averaged over some spacings between edges, and the same sum. Keeps some 12 bytes a pixel.
 #[derive(Clone, Debug)]
 pub struct StippleMap {
+    /// Over the part of the image that the map knows.
     acceptance: BilinearMap,
     phase: Vec<f32>,
     /// 0 … 255.
     detail: Vec<u8>,
     scales: Scales,
+    /// All of the image.
+    image: Domain,
+    /// Of its pixels.
+    mean: f64,
+}
+
+/// What a part of an image has to know of the whole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Whole {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    /// Of the pixels, at least 0.
+    pub(crate) mean: f64,
+    /// About how many there are to be on the image.
+    pub(crate) points: f64,
+}
+
+impl Whole {
+    fn scales(&self, acceptance: f64) -> Scales {
+        let points = if self.points > 1.0 { self.points } else { 1.0 };
+        let mean_spacing = libm::sqrt(self.width as f64 * self.height as f64 / points);
+        Scales {
+            spacing_of_one: mean_spacing * libm::sqrt(self.mean),
+            mean_spacing,
+            largest: LARGEST_SPACING * mean_spacing,
+            acceptance,
+        }
+    }
+
+    /// The pixels from which a map is made that gives the points of this part of the image.
+    pub(crate) fn needed(&self, part: &Area) -> Area {
+        self.layout(part, &self.scales(StippleMap::ACCEPTANCE)).needed
+    }
+
+    fn layout(&self, part: &Area, scales: &Scales) -> Layout {
+        // From a point's center to where it is moved to, and from there across an edge; it may look half a spacing
+        // and a pixel farther.
+        let margin = 2.0 * FARTHEST * scales.mean_spacing + 2.0 * scales.largest + 3.0;
+        let size = (self.width, self.height);
+        Layout::new(&part.grown(margin as usize, size), size, scales)
+    }
 }
 
 impl StippleMap {
@@ -100,32 +147,69 @@ impl StippleMap {
     #[doc(hidden)]
     pub fn accepting(pixels: Pixels, points: f64, acceptance: f64) -> Result<Self, MapError> {
         let (width, height) = pixels.size();
-        let mean = pixels.mean();
-        let importance = pixels.values;
-        let points = if points > 1.0 { points } else { 1.0 };
-        let mean_spacing = libm::sqrt(importance.len() as f64 / points);
-        let scales = Scales {
-            spacing_of_one: mean_spacing * libm::sqrt(mean),
-            mean_spacing,
-            largest: LARGEST_SPACING * mean_spacing,
-            acceptance,
+        let whole = Whole { width, height, mean: pixels.mean(), points };
+        let scales = whole.scales(acceptance);
+        let layout = Layout::new(&Area::whole((width, height)), (width, height), &scales);
+        Self::of_layout(&pixels.values, &layout, &whole, scales)
+    }
+
+    /// The map of a part of an image: within it, and around it as far as points come into it, the map of the whole
+    /// to the bit. `pixels` are those [`needed`](Whole::needed).
+    pub(crate) fn of_part(pixels: &Pixels, part: &Area, whole: &Whole) -> Result<Self, MapError> {
+        let scales = whole.scales(Self::ACCEPTANCE);
+        let layout = whole.layout(part, &scales);
+        let ((width, height), found) = (layout.needed.size(), pixels.values.len());
+        if pixels.size() != (width, height) {
+            return Err(MapError::Length { expected: layout.needed.len(), found });
+        }
+        Self::of_layout(&pixels.values, &layout, whole, scales)
+    }
+
+    fn of_layout(
+        pixels: &[f32],
+        layout: &Layout,
+        whole: &Whole,
+        scales: Scales,
+    ) -> Result<Self, MapError> {
+        let Planes { acceptance, phase, detail } = Planes::new(pixels, layout, &scales)?;
+        let rectangle = |area: &Area| {
+            let (width, height) = area.size();
+            Domain::new(
+                DVec2::new(area.x.start as f64, area.y.start as f64),
+                DVec2::new(width as f64, height as f64),
+            )
+            .map_err(|_| MapError::Empty { width, height })
         };
-        let Planes { acceptance, phase, detail } = Planes::new(&importance, width, &scales)?;
+        let (width, height) = layout.core.size();
         let acceptance = Pixels::new(width, height, acceptance, InvalidPixels::Reject)
-            .and_then(ImageMap::new)?;
-        Ok(Self { acceptance: BilinearMap::new(acceptance), phase, detail, scales })
+            .and_then(ImageMap::new)?
+            .over(rectangle(&layout.core)?);
+        Ok(Self {
+            acceptance: BilinearMap::new(acceptance),
+            phase,
+            detail,
+            scales,
+            image: rectangle(&Area::whole((whole.width, whole.height)))?,
+            mean: whole.mean,
+        })
     }
 
     /// The rectangle that the image covers.
     #[must_use]
     pub fn domain(&self) -> Domain {
-        self.acceptance.map().domain()
+        self.image
     }
 
     /// Where the planes' pixels lie.
     fn grid(&self) -> Grid {
         let (width, height) = self.acceptance.map().size();
-        Grid { width, height, min: DVec2::ZERO, texel: DVec2::ONE, wraps: false }
+        Grid { width, height, min: self.corner(), texel: DVec2::ONE, wraps: false }
+    }
+
+    /// The least corner of the planes.
+    #[inline(always)]
+    fn corner(&self) -> DVec2 {
+        self.acceptance.map().domain().min()
     }
 
     /// The importance averaged at the scale of the points' spacing.
@@ -144,6 +228,7 @@ impl StippleMap {
         // Signed: the cheaper conversion, which also takes NaN to 0.
         let index = |t: f64, size: usize| (t as i64).clamp(0, size as i64 - 1) as usize;
         let (width, height) = self.acceptance.map().size();
+        let at = at - self.corner();
         [index(at.x, width), index(at.y, height)]
     }
 
@@ -159,10 +244,18 @@ impl StippleMap {
     /// A point that rounding to single precision leaves on its pixel.
     fn within_pixel(&self, at: DVec2) -> DVec2 {
         let [x, y] = self.pixel(at);
-        let low = DVec2::new(x as f64, y as f64);
+        let low = self.corner() + DVec2::new(x as f64, y as f64);
         let inside = at.clamp(low + PIXEL_BORDER, low + (1.0 - PIXEL_BORDER));
         // What lies beyond the image does not come in by this.
         if (inside - at).abs().max_element() < 1.0 - PIXEL_BORDER { inside } else { at }
+    }
+
+    /// A place on the way to `moved` that is not too far from a point's center.
+    #[inline(always)]
+    fn near(&self, center: DVec2, moved: DVec2) -> DVec2 {
+        let (step, most) = (moved - center, FARTHEST * self.scales.mean_spacing);
+        let squared = step.x * step.x + step.y * step.y;
+        if squared > most * most { center + step * (most / libm::sqrt(squared)) } else { moved }
     }
 
     /// Where a point that is not accepted at `moved` goes: nowhere if that is on its own side of an edge,
@@ -230,8 +323,9 @@ impl Importance for StippleMap {
         self.acceptance.lower_bound(region)
     }
 
+    /// That of the pixels, known over the whole image only.
     fn integral(&self, domain: &Domain) -> Option<f64> {
-        self.acceptance.integral(domain)
+        (*domain == self.image).then(|| self.mean * domain.area())
     }
 
     #[inline(always)]
@@ -260,6 +354,7 @@ impl Importance for StippleMap {
     #[inline(always)]
     fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
         constrain_each(centers, moved, |center, moved, i| {
+            let moved = self.near(center, moved);
             if needed[i] < self.accepted_at(moved) {
                 moved
             } else {

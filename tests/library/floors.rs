@@ -16,7 +16,7 @@ const FLOORS: [&[&str]; 11] = [
     &["sampling"],
     &["walk"],
     &["emit"],
-    &["estimate", "refine", "export", "mesh"],
+    &["estimate", "refine", "export", "mesh", "mosaic"],
     &["light"],
     &["lib"],
 ];

@@ -1,0 +1,298 @@
+//! The maps that relaxed points read, made from an image: each side of an edge by itself.
+//!
+//! Importance that varies from pixel to pixel thins the points irregularly if each is accepted by the
+//! value under it, and averages that cross an edge give one side what is the other's. So each pixel gets
+//! a *tone* first: with the local spacing s as the unit of length,
+//!
+//! 1. s₁ = spacing(mean over half-side s₀), s₀ the spacing of the image's mean importance; s = spacing(mean
+//!    over half-side s₁). Neither exceeds 1.5·s₀;
+//! 2. away from edges, the tone is the mean over a box around the pixel, of half-side 0.8·s;
+//! 3. where the box of half-side s varies much more than the quietest of its quadrants, there is an edge,
+//!    and the tone is that quadrant's mean (Kuwahara's filter): the pixel's own side;
+//! 4. where even that quadrant is uneven, the picture is finer than the spacing: its pixel's own value,
+//!    and nothing where the pixel is 0.
+//!
+//! The *phase* is that with the mean over s₁ in step 2, the *detail* the deviation over the mean, of the
+//! box or of the quadrant. *Acceptance* is the tone, and what the tone lacks or exceeds at each pixel is
+//! spread over that pixel's own box, in proportion to the tones there: so the sum is the image's, and
+//! nothing comes where the image is 0.
+
+//!
+//! Sums begin anew in every page, a square of some reaches of a box, so that the maps of a part of an image are
+//! those of the whole, to the bit.
+
+mod area;
+mod spread;
+mod sums;
+
+use alloc::vec::Vec;
+
+pub(crate) use self::area::Area;
+use self::area::Pages;
+use self::spread::Spread;
+use self::sums::{Cut, Sums};
+use super::pixels::{MapError, filled, with_room};
+
+/// The side of a page, in reaches of a box: its sums, which reach beyond it, then have at most 1.6 times its pixels.
+const PAGE_REACHES: usize = 8;
+
+/// Sides of pages are multiples of so many pixels.
+const LEAST_PAGE: usize = 16;
+
+/// The relative deviations between which the share of the layer for detail grows from 0 to 1.
+const DETAIL_RANGE: [f64; 2] = [0.03, 0.15];
+
+/// By how much, of the mean, the box's deviation exceeds twice the quietest quadrant's where an edge
+/// begins and where there surely is one. A slope's is twice its quadrants', texture's about theirs.
+const EDGE_RANGE: [f64; 2] = [0.03, 0.10];
+
+/// The relative deviations of a quadrant between which its mean gives way to the pixel itself.
+const FINE_RANGE: [f64; 2] = [0.35, 0.6];
+
+/// The relative deviations of the box between which texture without an edge counts as finer than the
+/// spacing.
+const TEXTURE_RANGE: [f64; 2] = [0.6, 0.9];
+
+/// The part of the way from `low` to `high`, 0 … 1.
+fn share([low, high]: [f64; 2], at: f64) -> f64 {
+    ((at - low) / (high - low)).clamp(0.0, 1.0)
+}
+
+/// Lengths in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scales {
+    pub(super) spacing_of_one: f64,
+    pub(super) mean_spacing: f64,
+    pub(super) largest: f64,
+    /// In local spacings.
+    pub(super) acceptance: f64,
+}
+
+impl Scales {
+    /// The spacing of points where the importance is `importance`, in pixels, capped.
+    pub(super) fn spacing(&self, importance: f64) -> f64 {
+        if importance > 0.0 {
+            (self.spacing_of_one / libm::sqrt(importance)).min(self.largest)
+        } else {
+            self.largest
+        }
+    }
+}
+
+/// The maps that points read, row by row.
+pub(super) struct Planes {
+    pub(super) acceptance: Vec<f32>,
+    pub(super) phase: Vec<f32>,
+    /// 0 … 255.
+    pub(super) detail: Vec<u8>,
+}
+
+/// What is known of a pixel's surroundings.
+struct Surroundings {
+    tone: f64,
+    phase: f64,
+    detail: u8,
+    /// Half-side of the pixel's box.
+    half: f64,
+}
+
+impl Planes {
+    /// The maps over the pages around `core`, from the pixels that they [`need`](Layout::needed).
+    pub(super) fn new(image: &[f32], layout: &Layout, scales: &Scales) -> Result<Self, MapError> {
+        let Layout { whole, pages, reach, core, shared, toned, needed } = layout;
+        let mut tones = filled(0.0f32, toned.len())?;
+        let mut halves = filled(0.0f32, toned.len())?;
+        let (mut phase, mut detail) = (filled(0.0f32, core.len())?, filled(0u8, core.len())?);
+        let mut sums = Sums::default();
+        for page in pages.of(toned) {
+            sums.measure((image, needed), &page.grown(*reach, *whole), *whole)?;
+            for_each_pixel(&page.and(toned), |x, y| {
+                let value = image[needed.index(x, y)];
+                let around = surroundings(&sums, [x, y], value.into(), scales);
+                let i = toned.index(x, y);
+                // A tone of 0 is a pixel of 0, and the other way round.
+                tones[i] =
+                    if value > 0.0 { (around.tone as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
+                halves[i] = around.half as f32;
+                if core.x.contains(&x) && core.y.contains(&y) {
+                    phase[core.index(x, y)] = around.phase as f32;
+                    detail[core.index(x, y)] = around.detail;
+                }
+            });
+        }
+
+        // What each pixel gives to the tones in its box.
+        let mut spread = Spread::new(*pages, core)?;
+        for page in pages.of(shared) {
+            sums.measure((&tones, toned), &page.grown(*reach, *whole), *whole)?;
+            for_each_pixel(&page.and(shared), |x, y| {
+                let i = toned.index(x, y);
+                let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
+                if rest != 0.0 {
+                    let cut = Cut::about([x, y], halves[i].into(), *whole);
+                    let [sum, _] = sums.over(&cut);
+                    if sum > 0.0 {
+                        spread.add(&cut, rest / sum);
+                    }
+                }
+            });
+        }
+        spread.finish(&mut tones, toned);
+        if core != toned {
+            tones = cropped(&tones, toned, core)?;
+        }
+        Ok(Self { acceptance: tones, phase, detail })
+    }
+}
+
+fn for_each_pixel(area: &Area, mut pixel: impl FnMut(usize, usize)) {
+    for y in area.y.clone() {
+        for x in area.x.clone() {
+            pixel(x, y);
+        }
+    }
+}
+
+/// The part of a plane over `from` that lies over `to`.
+fn cropped(plane: &[f32], from: &Area, to: &Area) -> Result<Vec<f32>, MapError> {
+    let mut part = with_room(to.len())?;
+    for y in to.y.clone() {
+        part.extend_from_slice(&plane[from.index(to.x.start, y)..][..to.x.len()]);
+    }
+    Ok(part)
+}
+
+/// What is made of what: pixels around tones around shares around the maps.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// The image's size.
+    whole: (usize, usize),
+    pages: Pages,
+    /// No box reaches farther, in pixels.
+    reach: usize,
+    /// Whole pages, for which the maps are made.
+    pub(super) core: Area,
+    /// Pixels of which something may be spread over the core.
+    shared: Area,
+    /// Tones to which those give something, by the page.
+    toned: Area,
+    /// The pixels by which those are found, by the page.
+    pub(super) needed: Area,
+}
+
+impl Layout {
+    /// For maps that hold over this part of the image at least.
+    pub(super) fn new(part: &Area, whole: (usize, usize), scales: &Scales) -> Self {
+        let reach = libm::ceil(scales.largest.min(whole.0.max(whole.1) as f64)) as usize + 1;
+        let pages = Pages::new((PAGE_REACHES * reach).next_multiple_of(LEAST_PAGE), whole);
+        let core = pages.around(part);
+        let shared = core.grown(reach, whole);
+        let toned = pages.around(&shared).grown(reach, whole);
+        let needed = pages.around(&toned).grown(reach, whole);
+        Self { whole, pages, reach, core, shared, toned, needed }
+    }
+}
+
+fn surroundings(sums: &Sums, at: [usize; 2], value: f64, scales: &Scales) -> Surroundings {
+    let means = |half: f64| sums.means(at, half);
+    let [around, _] = means(scales.mean_spacing);
+    let [by_box, square_by_box] = means(scales.spacing(around));
+    let spacing = scales.spacing(by_box);
+    let half = scales.acceptance * spacing;
+    let [mut tone, _] = means(half);
+    let [local, square] = means(spacing);
+    let mut phase = by_box;
+    let deviation = |[mean, square]: [f64; 2]| libm::sqrt((square - mean * mean).max(0.0));
+    let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
+    let all = deviation([local, square]);
+    let mut unevenness = ratio(all, local);
+    if unevenness > EDGE_RANGE[0] {
+        let quadrants = sums.quadrants(at, spacing).map(|means| (means[0], deviation(means)));
+        let (mean, least) =
+            quadrants.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a }).unwrap_or_default();
+        let edge = share(EDGE_RANGE, ratio(all - 2.0 * least, local));
+        let fine = share(FINE_RANGE, ratio(least, mean));
+        let side = mean + fine * (value - mean);
+        // Where there is texture but no edge, its pixels of 0 matter alone.
+        let edge = edge.max(share(TEXTURE_RANGE, unevenness));
+        tone += edge * (side - tone);
+        // The importance at the points of the box, rather than at its pixels.
+        let of_points = ratio(square_by_box, by_box);
+        phase += edge * (of_points - phase);
+        let across = ratio(libm::fabs(of_points - side), side) + ratio(least, mean);
+        unevenness += edge * (across - unevenness);
+    }
+    let detail = (share(DETAIL_RANGE, unevenness) * 255.0 + 0.5) as u8;
+    Surroundings { tone, phase, detail, half }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix64;
+    use proptest::prelude::*;
+
+    fn planes(image: &[f32], width: usize, count: f64) -> Planes {
+        let mean = sum(image) / image.len() as f64;
+        let mean_spacing = libm::sqrt(image.len() as f64 / count);
+        let spacing_of_one = mean_spacing * libm::sqrt(mean);
+        let largest = 1.5 * mean_spacing;
+        let scales = Scales { spacing_of_one, mean_spacing, largest, acceptance: 0.8 };
+        let whole = (width, image.len() / width);
+        Planes::new(image, &Layout::new(&Area::whole(whole), whole, &scales), &scales).unwrap()
+    }
+
+    fn sum(pixels: &[f32]) -> f64 {
+        pixels.iter().map(|v| f64::from(*v)).sum()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn acceptance_keeps_the_sum_and_every_pixel_of_0(
+            seed: u64,
+            (width, height) in (1usize..40, 1usize..40),
+            white in prop_oneof![Just(0.0), Just(0.5), Just(0.97)],
+            count in 1.0..2000.0f64,
+        ) {
+            let mut random = SplitMix64::new(seed);
+            let image: Vec<f32> = (0..width * height)
+                .map(|_| if random.unit() < white { 0.0 } else { random.unit() as f32 })
+                .collect();
+            prop_assume!(sum(&image) > 0.0);
+            let acceptance = planes(&image, width, count).acceptance;
+            let (wanted, given) = (sum(&image), sum(&acceptance));
+            prop_assert!((given / wanted - 1.0).abs() < 1e-6, "{given} {wanted}");
+            for (pixel, accepted) in image.iter().zip(&acceptance) {
+                prop_assert!(*accepted >= 0.0 && (*pixel > 0.0 || *accepted == 0.0));
+            }
+        }
+    }
+
+    /// A dark disc in a gray square on white: what each is given.
+    #[test]
+    fn parts_keep_what_they_ask_for() {
+        let side = 160;
+        let tone = |i: usize| {
+            let (x, y) = ((i % side) as f64 - 79.5, (i / side) as f64 - 79.5);
+            match (x * x + y * y < 1225.0, x.abs().max(y.abs()) < 60.0) {
+                (true, _) => 0.92f32,
+                (false, true) => 0.37,
+                _ => 0.0,
+            }
+        };
+        let image: Vec<f32> = (0..side * side).map(tone).collect();
+        for count in [300.0, 1000.0, 4000.0] {
+            let acceptance = planes(&image, side, count).acceptance;
+            for part in [0.92, 0.37] {
+                let of = |pixels: &[f32]| -> f64 {
+                    let pixels = pixels.iter().zip(&image).filter(|(_, tone)| **tone == part);
+                    pixels.map(|(v, _)| f64::from(*v)).sum()
+                };
+                let bias = of(&acceptance) / of(&image) - 1.0;
+                assert!(bias.abs() < 0.003, "{count} {part}: {bias}");
+            }
+        }
+    }
+}
