@@ -5,7 +5,7 @@ mod canvas;
 mod coverage;
 mod csv;
 mod decimal;
-mod npy;
+pub mod npy;
 mod pdf;
 mod png;
 mod svg;
