@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
-    Stipple(StippleOptions),
+    Stipple(Box<StippleOptions>),
     /// Say of a photograph what its parts must know: how large it is, how dark, and how bright.
     ///
     /// For `stipple --part --survey`: it is read once, instead of once a part.
