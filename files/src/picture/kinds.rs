@@ -19,16 +19,16 @@ fn pixels<T>(of: impl Fn(usize, usize) -> T) -> Vec<T> {
 }
 
 /// An entry of a directory: its tag, the bytes of a value, and its values.
-type Entry = (usize, usize, Vec<usize>);
+pub(super) type Entry = (usize, usize, Vec<usize>);
 
 /// How a file writes its numbers.
-#[derive(Clone, Copy)]
-struct Form {
-    big_endian: bool,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Form {
+    pub(super) big_endian: bool,
     long: bool,
 }
 
-const FORMS: [Form; 4] = [
+pub(super) const FORMS: [Form; 4] = [
     Form { big_endian: false, long: false },
     Form { big_endian: true, long: false },
     Form { big_endian: false, long: true },
@@ -36,7 +36,7 @@ const FORMS: [Form; 4] = [
 ];
 
 impl Form {
-    fn put(self, out: &mut Vec<u8>, value: usize, size: usize) {
+    pub(super) fn put(self, out: &mut Vec<u8>, value: usize, size: usize) {
         let bytes = (value as u64).to_be_bytes();
         if self.big_endian {
             out.extend(&bytes[8 - size..]);
@@ -45,12 +45,12 @@ impl Form {
         }
     }
 
-    fn word(self) -> usize {
+    pub(super) fn word(self) -> usize {
         if self.long { 8 } else { 4 }
     }
 
-    /// A file of these directories, each with its entries and its one strip; the later ones are within the first.
-    fn file(self, pages: &[(Vec<Entry>, &[u8])]) -> Vec<u8> {
+    /// The start of a file, with the place where the first directory's is to be written.
+    pub(super) fn start(self) -> (Vec<u8>, usize) {
         let mut out = match (self.big_endian, self.long) {
             (false, false) => b"II*\0".to_vec(),
             (true, false) => b"MM\0*".to_vec(),
@@ -59,6 +59,55 @@ impl Form {
         };
         let first = out.len();
         self.put(&mut out, 0, self.word());
+        (out, first)
+    }
+
+    /// Writes a directory, which is the last one, and says where it lies.
+    pub(super) fn directory(self, out: &mut Vec<u8>, entries: &[Entry]) -> usize {
+        let mut stored = Vec::new();
+        for (tag, size, values) in entries {
+            let mut bytes = Vec::new();
+            values.iter().for_each(|&value| self.put(&mut bytes, value, *size));
+            if bytes.len() > self.word() {
+                let place = out.len();
+                out.extend(bytes);
+                bytes = Vec::new();
+                self.put(&mut bytes, place, self.word());
+            }
+            bytes.resize(self.word(), 0);
+            let (kind, count) = match (tag, size) {
+                // Resolutions are fractions.
+                (282 | 283, _) => (5, 1),
+                (_, 1) => (1, values.len()),
+                (_, 2) => (3, values.len()),
+                (_, 4) => (4, values.len()),
+                _ => (16, values.len()),
+            };
+            stored.push((*tag, kind, count, bytes));
+        }
+        stored.sort_by_key(|entry| entry.0);
+        let place = out.len();
+        self.put(out, stored.len(), if self.long { 8 } else { 2 });
+        for (tag, kind, count, bytes) in stored {
+            self.put(out, tag, 2);
+            self.put(out, kind, 2);
+            self.put(out, count, self.word());
+            out.extend(bytes);
+        }
+        self.put(out, 0, self.word());
+        place
+    }
+
+    /// Writes where the first directory lies.
+    pub(super) fn begin(self, out: &mut [u8], first: usize, place: usize) {
+        let mut offset = Vec::new();
+        self.put(&mut offset, place, self.word());
+        out[first..first + offset.len()].copy_from_slice(&offset);
+    }
+
+    /// A file of these directories, each with its entries and its one strip; the later ones are within the first.
+    fn file(self, pages: &[(Vec<Entry>, &[u8])]) -> Vec<u8> {
+        let (mut out, first) = self.start();
         let mut within = Vec::new();
         for (page, (entries, strip)) in pages.iter().enumerate().rev() {
             let mut entries = entries.clone();
@@ -68,43 +117,35 @@ impl Form {
                 entries.push((330, self.word(), within.clone()));
             }
             out.extend(*strip);
-            let mut stored = Vec::new();
-            for (tag, size, values) in &entries {
-                let mut bytes = Vec::new();
-                values.iter().for_each(|&value| self.put(&mut bytes, value, *size));
-                if bytes.len() > self.word() {
-                    let place = out.len();
-                    out.extend(bytes);
-                    bytes = Vec::new();
-                    self.put(&mut bytes, place, self.word());
-                }
-                bytes.resize(self.word(), 0);
-                stored.push((*tag, *size, values.len(), bytes));
-            }
-            stored.sort_by_key(|entry| entry.0);
-            let place = out.len();
+            let place = self.directory(&mut out, &entries);
             within.push(place);
-            self.put(&mut out, stored.len(), if self.long { 8 } else { 2 });
-            for (tag, size, count, bytes) in stored {
-                let kind = match size {
-                    1 => 1,
-                    2 => 3,
-                    4 => 4,
-                    _ => 16,
-                };
-                self.put(&mut out, tag, 2);
-                self.put(&mut out, kind, 2);
-                self.put(&mut out, count, self.word());
-                out.extend(bytes);
-            }
-            self.put(&mut out, 0, self.word());
             if page == 0 {
-                let mut offset = Vec::new();
-                self.put(&mut offset, place, self.word());
-                out[first..first + offset.len()].copy_from_slice(&offset);
+                self.begin(&mut out, first, place);
             }
         }
         out
+    }
+
+    /// The head of a file whose one directory has these entries, and strips or tiles of these lengths, which lie
+    /// behind it one after the other.
+    pub(super) fn head(self, entries: &[Entry], tiled: bool, lengths: &[usize]) -> Vec<u8> {
+        let of = |start: usize| {
+            let (mut out, first) = self.start();
+            let mut end = start;
+            let mut offsets = Vec::new();
+            for length in lengths {
+                offsets.push(end);
+                end += length;
+            }
+            let tags = if tiled { (324, 325) } else { (273, 279) };
+            let mut entries = entries.to_vec();
+            entries.push((tags.0, self.word(), offsets));
+            entries.push((tags.1, 4, lengths.to_vec()));
+            let place = self.directory(&mut out, &entries);
+            self.begin(&mut out, first, place);
+            out
+        };
+        of(of(0).len())
     }
 }
 
@@ -122,7 +163,7 @@ fn entries(photometric: usize, bits: usize, samples: usize) -> Vec<Entry> {
 }
 
 /// Rows of samples of a few bits each, each row beginning on a byte.
-fn packed(row: usize, bits: usize, numbers: &[usize]) -> Vec<u8> {
+pub(super) fn packed(row: usize, bits: usize, numbers: &[usize]) -> Vec<u8> {
     let mut out = Vec::new();
     for row in numbers.chunks(row) {
         let mut text: String = row.iter().map(|number| format!("{number:0bits$b}")).collect();

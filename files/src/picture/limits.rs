@@ -26,6 +26,32 @@ pub(super) fn check(
     }
 }
 
+/// Whether so many bytes, beside a window of this size and four bytes a pixel, stay within [`MEMORY_LIMIT`]: those of
+/// a strip, tile or block of a file, `part` pixels across and down, decoded one at a time.
+///
+/// # Errors
+/// [`PictureError::Empty`], and of whichever is larger [`PictureError::TooLarge`] or
+/// [`PictureError::LargeParts`].
+#[cfg(feature = "every-format")]
+pub(super) fn check_beside(
+    (width, height): (usize, usize),
+    part: (usize, usize),
+    bytes_per_pixel: usize,
+) -> Result<(), PictureError> {
+    check(width, height, 0)?;
+    let window = bytes(width, height, 0).unwrap_or(u64::MAX);
+    let (across, down) = (part.0 as u64, part.1 as u64);
+    let beside =
+        across.checked_mul(down).and_then(|count| count.checked_mul(bytes_per_pixel as u64));
+    match beside.and_then(|beside| beside.checked_add(window)) {
+        Some(bytes) if bytes <= MEMORY_LIMIT => Ok(()),
+        bytes if beside.is_none_or(|beside| beside > window) => {
+            Err(PictureError::LargeParts { width: part.0, height: part.1, bytes })
+        }
+        bytes => Err(PictureError::TooLarge { width, height, bytes }),
+    }
+}
+
 /// The error for a picture of this size.
 pub(super) fn too_large(width: usize, height: usize, bytes_per_pixel: usize) -> PictureError {
     PictureError::TooLarge { width, height, bytes: bytes(width, height, bytes_per_pixel) }
@@ -47,5 +73,22 @@ mod tests {
         assert!(matches!(check(1 << 14, 1 << 14, 1), Err(PictureError::TooLarge { .. })));
         assert!(matches!(check(usize::MAX, usize::MAX, 16), Err(PictureError::TooLarge { .. })));
         assert!(matches!(check(0, 5, 3), Err(PictureError::Empty)));
+    }
+
+    #[cfg(feature = "every-format")]
+    #[test]
+    fn parts_count_beside_the_window() {
+        use PictureError::{Empty, LargeParts, TooLarge};
+        let side = 1 << 13;
+        assert!(check_beside((side, side), (side, side), 12).is_ok());
+        let large =
+            |bytes| LargeParts { width: side, height: side, bytes: Some(bytes) }.to_string();
+        let of_part = check_beside((side, side), (side, side), 13).unwrap_err();
+        assert_eq!(of_part.to_string(), large(17 << 26));
+        let window = check_beside((2 * side, 2 * side), (side, side), 1);
+        assert!(matches!(window, Err(TooLarge { bytes: Some(_), .. })));
+        let endless = check_beside((1, 1), (usize::MAX, usize::MAX), 2);
+        assert!(matches!(endless, Err(LargeParts { bytes: None, .. })));
+        assert!(matches!(check_beside((0, 1), (1, 1), 1), Err(Empty)));
     }
 }

@@ -1,5 +1,6 @@
 //! Reading a photograph into importance: format by content, memory by header, tone by option.
 
+mod area;
 mod aspect;
 #[cfg(all(test, feature = "every-format"))]
 mod cases;
@@ -24,19 +25,25 @@ mod radiance;
 mod raster;
 mod reduced;
 mod sample;
+mod scan;
+#[cfg(all(test, feature = "every-format"))]
+mod scans;
 mod source;
 pub mod srgb;
 #[cfg(feature = "every-format")]
 mod tiff;
 mod tone;
 
+use std::cell::Cell;
 use std::error::Error;
 use std::fmt;
 use std::io;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
+use std::sync::Once;
 
 pub use format::Format;
+pub use scan::Scan;
 pub use tone::{Levels, Tone};
 
 use image::metadata::Orientation;
@@ -136,6 +143,11 @@ pub enum PictureError {
     TooLong { bytes: u64 },
     /// The header asks for more memory than the limit; `bytes` is `None` past 64 bits.
     TooLarge { width: usize, height: usize, bytes: Option<u64> },
+    /// Strips, tiles or blocks so large that one of them, beside the window that is read, needs more memory than
+    /// the limit.
+    LargeParts { width: usize, height: usize, bytes: Option<u64> },
+    /// A window that reaches out of the picture, which has this size.
+    Outside { width: usize, height: usize },
     /// A format that stores tones for a display, where light is needed.
     NotRadiance(Format),
     /// The header says that there are no pixels.
@@ -180,11 +192,18 @@ impl fmt::Display for PictureError {
             ),
             Self::TooLarge { width, height, bytes } => {
                 write!(out, "has {width} x {height} pixels, which need ")?;
-                match bytes {
-                    Some(bytes) => write!(out, "{} MiB", bytes.div_ceil(1 << 20))?,
-                    None => out.write_str("over 16 EiB")?,
-                }
-                write!(out, " of memory, more than the limit of {} MiB", limits::MEMORY_LIMIT >> 20)
+                too_much(out, *bytes)
+            }
+            Self::LargeParts { width, height, bytes } => {
+                write!(
+                    out,
+                    "holds its pixels in parts of {width} x {height}, which with what is read of them need "
+                )?;
+                too_much(out, *bytes)?;
+                out.write_str("; save it in small tiles")
+            }
+            Self::Outside { width, height } => {
+                write!(out, "has {width} x {height} pixels, fewer than are asked for")
             }
             Self::NotRadiance(format) => write!(
                 out,
@@ -198,6 +217,15 @@ impl fmt::Display for PictureError {
             }
         }
     }
+}
+
+/// So much memory, which is more than there may be.
+fn too_much(out: &mut fmt::Formatter<'_>, bytes: Option<u64>) -> fmt::Result {
+    match bytes {
+        Some(bytes) => write!(out, "{} MiB", bytes.div_ceil(1 << 20))?,
+        None => out.write_str("over 16 EiB")?,
+    }
+    write!(out, " of memory, more than the limit of {} MiB", limits::MEMORY_LIMIT >> 20)
 }
 
 impl Error for PictureError {
@@ -340,7 +368,16 @@ fn decode_source<P: Pixel>(
     path: &Path,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
-    let format = Format::detect(&mut source, path)?;
+    source.check()?;
+    let format = detect(&mut source, path, wanted)?;
+    let decoded = caught(format, || decode_format(format, source, wanted))?;
+    // Directions have no shape of pixels.
+    if wanted.radiance { Ok(decoded) } else { aspect::squared(decoded) }
+}
+
+/// The format of a file of this name, which can hold what is wanted.
+fn detect(source: &mut Source, path: &Path, wanted: Wanted<'_>) -> Result<Format, PictureError> {
+    let format = Format::detect(source, path)?;
     let float = matches!(format, Format::Hdr | Format::OpenExr | Format::Pfm | Format::Tiff);
     if wanted.radiance && !float {
         return Err(PictureError::NotRadiance(format));
@@ -351,7 +388,16 @@ fn decode_source<P: Pixel>(
     if wanted.layer.is_some() && format != Format::OpenExr {
         return Err(PictureError::NoLayers(format));
     }
-    let decoded = caught(format, || match format {
+    Ok(format)
+}
+
+/// Reads a file of this format, in the shape of its pixels.
+fn decode_format<P: Pixel>(
+    format: Format,
+    source: Source,
+    wanted: Wanted<'_>,
+) -> Result<Decoded<P>, PictureError> {
+    match format {
         Format::Png => png::read(source, wanted),
         Format::Jpeg => jpeg::read(source, wanted),
         Format::Hdr => radiance::read(source, wanted),
@@ -364,9 +410,7 @@ fn decode_source<P: Pixel>(
         other => raster::read(other, source, wanted),
         #[cfg(not(feature = "every-format"))]
         _ => Err(PictureError::UnknownFormat),
-    })?;
-    // Directions have no shape of pixels.
-    if wanted.radiance { Ok(decoded) } else { aspect::squared(decoded) }
+    }
 }
 
 /// The error of a read that failed, which may be that the file ended.
@@ -385,10 +429,23 @@ fn caught<T>(
     format: Format,
     decode: impl FnOnce() -> Result<T, PictureError>,
 ) -> Result<T, PictureError> {
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
+    thread_local! {
+        /// Whether this thread decodes, so that its panics are not told.
+        static QUIET: Cell<bool> = const { Cell::new(false) };
+    }
+    static HOOK: Once = Once::new();
+    // Once, since another thread may decode or panic meanwhile.
+    HOOK.call_once(|| {
+        let hook = panic::take_hook();
+        panic::set_hook(Box::new(move |panic| {
+            if !QUIET.get() {
+                hook(panic);
+            }
+        }));
+    });
+    let outside = QUIET.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
-    panic::set_hook(hook);
+    QUIET.set(outside);
     result.unwrap_or_else(|_| Err(PictureError::Decode(format, "the file is malformed".into())))
 }
 

@@ -1,7 +1,10 @@
-//! The pixels of a picture, filled in the order that a file holds them and stored upright.
+//! The pixels of a picture or of a window of it, filled in the order that a file holds them and stored upright.
+
+use std::ops::Range;
 
 use image::metadata::Orientation;
 
+use super::area::Area;
 use super::{PictureError, Pixel, Toner, limits};
 
 /// A file's pixels, upright.
@@ -23,7 +26,8 @@ pub(super) struct Decoded<P> {
 #[derive(Debug)]
 pub(super) struct Plane<P> {
     picture: Decoded<P>,
-    turned: bool,
+    stored: Area,
+    orientation: Orientation,
     /// Index of the stored pixel (0, 0), and the steps to the next in its row and its column.
     origin: isize,
     step_x: isize,
@@ -39,48 +43,63 @@ impl<P: Pixel> Plane<P> {
     /// [`PictureError::Empty`] without pixels, and [`PictureError::TooLarge`] beyond the memory limit
     /// or what the system gives.
     pub(super) fn new(
-        (width, height): (usize, usize),
+        size: (usize, usize),
         orientation: Orientation,
         background: P,
     ) -> Result<Self, PictureError> {
+        let window = Area::whole(upright(size, orientation));
+        Self::of_window(size, orientation, background, &window)
+    }
+
+    /// A plane for no more of such a file than a window of the upright picture, in which it must lie.
+    ///
+    /// # Errors
+    /// As of [`Self::new`], of the window.
+    pub(super) fn of_window(
+        size: (usize, usize),
+        orientation: Orientation,
+        background: P,
+        window: &Area,
+    ) -> Result<Self, PictureError> {
+        let (width, height) = window.size();
         let bytes = size_of::<P>() - size_of::<f32>();
         let count = limits::check(width, height, bytes)?;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| limits::too_large(width, height, bytes))?;
         pixels.resize(count, background);
 
-        let turned = matches!(
-            orientation,
-            Orientation::Rotate90
-                | Orientation::Rotate270
-                | Orientation::Rotate90FlipH
-                | Orientation::Rotate270FlipH
-        );
-        let (upright_width, upright_height) =
-            if turned { (height, width) } else { (width, height) };
-        // Both dimensions are below the memory limit, so nothing here can overflow.
-        let row = upright_width as isize;
-        let (right, bottom) = (row - 1, (upright_height as isize - 1) * row);
-        let (origin, step_x, step_y) = match orientation {
-            Orientation::NoTransforms => (0, 1, row),
-            Orientation::FlipHorizontal => (right, -1, row),
-            Orientation::FlipVertical => (bottom, 1, -row),
-            Orientation::Rotate180 => (bottom + right, -1, -row),
-            Orientation::Rotate90 => (right, row, -1),
-            Orientation::Rotate270 => (bottom, -row, 1),
-            Orientation::Rotate90FlipH => (0, row, 1),
-            Orientation::Rotate270FlipH => (bottom + right, -row, -1),
+        let whole = upright(size, orientation);
+        let (turned, [left_right, up_down]) = turns(orientation);
+        let ends = |range: &Range<usize>, length: usize, mirrored: bool| {
+            if mirrored { length - range.end..length - range.start } else { range.clone() }
+        };
+        let across = ends(&window.columns, whole.0, left_right);
+        let down = ends(&window.rows, whole.1, up_down);
+        // Of the window's rows, and of the pixels in them.
+        let step_x = if left_right { -1 } else { 1 };
+        let step_y = if up_down { -(width as isize) } else { width as isize };
+        let first = |mirrored: bool, length: usize| if mirrored { length - 1 } else { 0 };
+        // A pixel outside of the window may be beyond the numbers there are, but none within is.
+        let corner = (first(up_down, height) * width + first(left_right, width)) as isize;
+        let origin = corner
+            .wrapping_sub((across.start as isize).wrapping_mul(step_x))
+            .wrapping_sub((down.start as isize).wrapping_mul(step_y));
+        let (stored, step_x, step_y) = if turned {
+            (Area { columns: down, rows: across }, step_y, step_x)
+        } else {
+            (Area { columns: across, rows: down }, step_x, step_y)
         };
         Ok(Self {
             picture: Decoded {
-                width: upright_width,
-                height: upright_height,
+                width,
+                height,
                 pixels,
                 aspect: 1.0,
                 range: None,
                 warnings: Vec::new(),
             },
-            turned,
+            stored,
+            orientation,
             origin,
             step_x,
             step_y,
@@ -88,12 +107,20 @@ impl<P: Pixel> Plane<P> {
         })
     }
 
-    /// Sets the stored pixel (x, y), which must lie in the plane; `None` marks a
+    /// The stored pixels that are wanted.
+    pub(super) fn stored(&self) -> &Area {
+        &self.stored
+    }
+
+    /// Sets the stored pixel (x, y), which must be one of [`Self::stored`]; `None` marks a
     /// pixel that is not a finite number.
     pub(super) fn set(&mut self, x: usize, y: usize, pixel: Option<P>) {
         match pixel {
             Some(pixel) => {
-                let index = self.origin + x as isize * self.step_x + y as isize * self.step_y;
+                let index = self
+                    .origin
+                    .wrapping_add((x as isize).wrapping_mul(self.step_x))
+                    .wrapping_add((y as isize).wrapping_mul(self.step_y));
                 self.picture.pixels[index as usize] = pixel;
             }
             None => {
@@ -107,9 +134,7 @@ impl<P: Pixel> Plane<P> {
 
     /// Says that a stored pixel is so many times as wide as high; what is no shape is passed over.
     pub(super) fn set_aspect(&mut self, aspect: f64) {
-        if aspect.is_finite() && (1.0 / 64.0..=64.0).contains(&aspect) {
-            self.picture.aspect = if self.turned { 1.0 / aspect } else { aspect };
-        }
+        self.picture.aspect = upright_aspect(aspect, self.orientation);
     }
 
     /// Adds what was assumed or amiss.
@@ -127,6 +152,35 @@ impl<P: Pixel> Plane<P> {
             Some((x, y)) => Err(PictureError::NotFinite { x, y }),
             None => Ok(self.picture),
         }
+    }
+}
+
+/// The size of the upright picture of a file of this size.
+pub(super) fn upright((width, height): (usize, usize), orientation: Orientation) -> (usize, usize) {
+    if turns(orientation).0 { (height, width) } else { (width, height) }
+}
+
+/// How many times as wide as high a pixel is upright that as stored is so many times; what is no shape is square.
+pub(super) fn upright_aspect(aspect: f64, orientation: Orientation) -> f64 {
+    match aspect.is_finite() && (1.0 / 64.0..=64.0).contains(&aspect) {
+        true if turns(orientation).0 => 1.0 / aspect,
+        true => aspect,
+        false => 1.0,
+    }
+}
+
+/// Whether a stored picture's rows are columns when it is upright; and whether then left and right, and top and
+/// bottom, change places.
+fn turns(orientation: Orientation) -> (bool, [bool; 2]) {
+    match orientation {
+        Orientation::NoTransforms => (false, [false, false]),
+        Orientation::FlipHorizontal => (false, [true, false]),
+        Orientation::FlipVertical => (false, [false, true]),
+        Orientation::Rotate180 => (false, [true, true]),
+        Orientation::Rotate90 => (true, [true, false]),
+        Orientation::Rotate270 => (true, [false, true]),
+        Orientation::Rotate90FlipH => (true, [false, false]),
+        Orientation::Rotate270FlipH => (true, [true, true]),
     }
 }
 
@@ -155,6 +209,36 @@ mod tests {
             let expected: Vec<f32> =
                 upright.pixels().map(|(_, _, pixel)| f32::from(pixel.0[0])).collect();
             assert_eq!(picture.pixels, expected, "orientation {tag}");
+        }
+    }
+
+    #[test]
+    fn a_window_of_any_orientation_is_cut_out_of_the_whole() {
+        let size = (4, 3);
+        for tag in 1..=8 {
+            let orientation = Orientation::from_exif(tag).unwrap();
+            let filled = |mut plane: Plane<f32>| {
+                let stored = plane.stored().clone();
+                for (x, y) in (0..12).map(|i| (i % 4, i / 4)).filter(|&(x, y)| stored.holds(x, y)) {
+                    plane.set(x, y, Some((10 * y + x) as f32));
+                }
+                plane.finish(None).unwrap().pixels
+            };
+            let whole = Area::whole(upright(size, orientation));
+            let pixels = filled(Plane::new(size, orientation, 99.0).unwrap());
+            for (left, top) in (0..16).map(|i| (i % 4, i / 4)) {
+                for (right, bottom) in (0..25).map(|i| (i % 5, i / 5)) {
+                    let window = Area { columns: left..right, rows: top..bottom };
+                    if window.is_empty() || window.meet(&whole) != window {
+                        continue;
+                    }
+                    let found = Plane::of_window(size, orientation, 99.0, &window).unwrap();
+                    assert_eq!(found.stored().columns.len() * found.stored().rows.len(), {
+                        window.columns.len() * window.rows.len()
+                    });
+                    assert_eq!(filled(found), window.cut(&whole, &pixels), "{tag} {window:?}");
+                }
+            }
         }
     }
 

@@ -1,24 +1,24 @@
 //! OpenEXR: the first layer with red, green and blue, or else with luminance, block by block.
 
+mod blocks;
 mod layer;
 mod planes;
 
-use std::io::Seek as _;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::ops::Range;
 
-use exr::block::lines::LineRef;
-use exr::block::reader::ChunksReader as _;
-use exr::block::{self, UncompressedBlock};
-use exr::error::{Error as ExrError, UnitResult};
+use exr::error::Error as ExrError;
 use exr::meta::MetaData;
-use exr::meta::attribute::{ChannelDescription, EnvironmentMap, SampleType};
+use exr::meta::attribute::EnvironmentMap;
 use exr::meta::header::Header;
-use exr::prelude::f16;
 use image::metadata::Orientation;
 
+use super::area::Area;
 use super::color::{Primaries, Space};
-use super::plane::{Decoded, Plane};
+use super::plane::{self, Decoded, Plane};
 use super::source::Source;
-use super::{Alpha, Colors, Format, PictureError, Pixel, Toner, Wanted, color, limits};
+use super::{Alpha, Colors, Format, PictureError, Pixel, Tone, Toner, Wanted, color, limits};
+pub(super) use blocks::Blocks;
 use layer::Layer;
 
 /// Red, green, blue and alpha, or luminance and alpha, as far as a layer has them.
@@ -40,111 +40,121 @@ pub(super) fn read<P: Pixel>(
     {
         return Err(PictureError::NotLatitudeLongitude("the six faces of a cube"));
     }
+    if !complete::<P>(&meta, &layer) {
+        return planes::read(&mut source, &meta, &layer, wanted);
+    }
+    // A block may be as large as the layer, which may be larger than the picture.
+    let bytes = layer.header.channels.bytes_per_pixel + size_of::<P>() - size_of::<f32>();
+    limits::check(layer.header.layer_size.0, layer.header.layer_size.1, bytes)?;
+    let mut blocks = Blocks::open(source, wanted)?;
+    let whole = Area::whole(blocks.size());
+    blocks.window(&whole)
+}
+
+/// Whether the layer can be read by windows, as [`Blocks`] does, for importance.
+pub(super) fn in_blocks(source: &mut Source, wanted: Wanted<'_>) -> Result<bool, PictureError> {
+    source.rewind()?;
+    let meta = MetaData::read_from_buffered(&mut *source, true).map_err(failure)?;
+    let layer = Layer::choose(&meta.headers, wanted.layer)?;
+    Ok(complete::<f32>(&meta, &layer))
+}
+
+/// Whether each pixel has all samples that count.
+fn complete<P: Pixel>(meta: &MetaData, layer: &Layer<'_>) -> bool {
     let mut channels = meta.headers.iter().flat_map(|header| &header.channels.list);
     let whole = channels.all(|channel| (channel.sampling.0, channel.sampling.1) == (1, 1));
     // What goes by luminance alone has no use for the rest.
-    if !whole || P::COLORED && layer.chroma.is_some() {
-        return planes::read(&mut source, &meta, &layer, wanted);
+    whole && !(P::COLORED && layer.chroma.is_some())
+}
+
+/// Where the blocks of a part of the file lie, in the order of its table, which is that of the rows. `source` is
+/// where the header ended.
+fn offsets(source: &mut Source, meta: &MetaData, index: usize) -> Result<Vec<u64>, PictureError> {
+    let tables = source.stream_position()?;
+    let before: usize = meta.headers[..index].iter().map(|header| header.chunk_count).sum();
+    let start = tables.saturating_add((before as u64).saturating_mul(8));
+    let count = meta.headers[index].chunk_count;
+    // A table that is not there takes no memory.
+    if (count as u64).saturating_mul(8) > source.length()?.saturating_sub(start) {
+        return Err(PictureError::Truncated(Format::OpenExr));
     }
-    source.rewind()?;
-    let file = block::read(source, false).map_err(failure)?;
-    let layer = Layer::choose(file.headers(), wanted.layer)?;
-    let (index, colors) = (layer.index, layer.colors);
-    // A block may be as large as the layer, which may be larger than the picture.
-    let bytes = layer.header.channels.bytes_per_pixel + size_of::<P>() - size_of::<f32>();
-    let mut canvas = Canvas::new(&layer, colors, bytes, wanted)?;
-    let slots = layer.slots;
-
-    let mut row: Vec<Samples> = Vec::new();
-    let chunks = file
-        .filter_chunks(false, |_, tile, block| {
-            block.layer == index && tile.is_largest_resolution_level()
-        })
-        .map_err(failure)?;
-    chunks
-        .decompress_sequential(false, |meta, block: UncompressedBlock| -> UnitResult {
-            let Some(header) = meta.headers.get(index) else { return Ok(()) };
-            row.clear();
-            row.resize(block.index.pixel_size.0, Samples::default());
-            // Each row of pixels comes as one line a channel, in the order of the channels.
-            for line in block.lines(&header.channels) {
-                let channels = &header.channels.list;
-                let Some(channel) = channels.get(line.location.channel) else { continue };
-                if let Some(&Some(slot)) = slots.get(line.location.channel) {
-                    // Behind the luminance alone, or behind the three colors.
-                    let slot = if slot == ALPHA { colors.count() } else { slot };
-                    take(&mut row, slot, channel, &line)?;
-                }
-                if line.location.channel + 1 < channels.len() {
-                    continue;
-                }
-                for (offset, pixel) in row.iter().enumerate() {
-                    canvas.set(line.location.position.0 + offset, line.location.position.1, pixel);
-                }
-            }
-            Ok(())
-        })
-        .map_err(failure)?;
-    canvas.finish()
+    source.seek(SeekFrom::Start(start))?;
+    let mut offsets = Vec::new();
+    offsets.try_reserve_exact(count).map_err(|_| limits::too_large(count, 1, 8))?;
+    for _ in 0..count {
+        offsets.push(u64::from_le_bytes(bytes(source)?));
+    }
+    Ok(offsets)
 }
 
-/// The picture, in which a layer's pixels have their place.
-struct Canvas<P> {
-    plane: Plane<P>,
+/// How the pixels of a layer become those of the picture.
+struct View<P> {
     toner: Toner,
+    /// A pixel that the layer does not reach.
+    background: P,
+    /// Of the picture.
     size: (usize, usize),
-    /// Where the layer's corner lies in the picture.
+    /// Where the layer's corner lies in it.
     shift: (i64, i64),
+    /// Width of a pixel over its height.
+    aspect: f64,
 }
 
-impl<P: Pixel> Canvas<P> {
-    /// An empty picture for a layer, read as these colors, which takes so many bytes a pixel.
-    fn new(
-        layer: &Layer<'_>,
-        colors: Colors,
-        bytes: usize,
-        wanted: Wanted<'_>,
-    ) -> Result<Self, PictureError> {
+impl<P: Pixel> View<P> {
+    /// That of a layer which is read as these colors.
+    fn of(layer: &Layer<'_>, colors: Colors, tone: Tone) -> Self {
         let header = layer.header;
-        limits::check(header.layer_size.0, header.layer_size.1, bytes)?;
         let window = header.shared_attributes.display_window;
-        let size = (window.size.0, window.size.1);
         let space = match primaries(header) {
             Some(primaries) if colors == Colors::Rgb => Space::default().with_primaries(&primaries),
             _ => Space::default(),
         };
         let transparent = layer.slots.contains(&Some(ALPHA));
         let alpha = if transparent { Alpha::Associated } else { Alpha::None };
-        let toner = Toner::new::<f32>(wanted.tone, colors, alpha, space);
+        let toner = Toner::new::<f32>(tone, colors, alpha, space);
         let background = P::of(&toner, &Samples::default()).unwrap_or(P::NOTHING);
         // One that has seen nothing yet.
-        let toner = Toner::new::<f32>(wanted.tone, colors, alpha, toner.into_space());
-        let mut plane = Plane::new(size, Orientation::NoTransforms, background)?;
-        plane.set_aspect(f64::from(header.shared_attributes.pixel_aspect));
+        let toner = Toner::new::<f32>(tone, colors, alpha, toner.into_space());
         // Both corners are 32-bit, so their difference fits.
         let corner = header.own_attributes.layer_position;
         let shift = (
             i64::from(corner.0) - i64::from(window.position.0),
             i64::from(corner.1) - i64::from(window.position.1),
         );
-        Ok(Self { plane, toner, size, shift })
+        let aspect = f64::from(header.shared_attributes.pixel_aspect);
+        let aspect = plane::upright_aspect(aspect, Orientation::NoTransforms);
+        Self { toner, background, size: (window.size.0, window.size.1), shift, aspect }
     }
 
-    /// Sets a pixel of the layer, if it lies in the picture.
-    fn set(&mut self, x: usize, y: usize, samples: &Samples) {
-        let inside = |position: usize, shift: i64, length: usize| {
-            let place = usize::try_from(i64::try_from(position).ok()? + shift).ok()?;
-            (place < length).then_some(place)
+    /// Nothing yet of a window of the picture.
+    fn plane(&self, window: &Area) -> Result<Plane<P>, PictureError> {
+        let mut plane =
+            Plane::of_window(self.size, Orientation::NoTransforms, self.background, window)?;
+        plane.set_aspect(self.aspect);
+        Ok(plane)
+    }
+
+    /// A window of the picture in the layer's own numbers, which begin at its corner.
+    fn of_layer(&self, window: &Area) -> Area {
+        let shifted = |range: &Range<usize>, shift: i64| {
+            let own = |place: usize| usize::try_from(place as i64 - shift).unwrap_or(0);
+            own(range.start)..own(range.end)
         };
-        if let Some(y) = inside(y, self.shift.1, self.size.1)
-            && let Some(x) = inside(x, self.shift.0, self.size.0)
-        {
-            self.plane.set(x, y, P::of(&self.toner, samples));
-        }
+        let (columns, rows) = (&window.columns, &window.rows);
+        Area { columns: shifted(columns, self.shift.0), rows: shifted(rows, self.shift.1) }
     }
 
-    fn finish(self) -> Result<Decoded<P>, PictureError> {
-        self.plane.finish(Some(&self.toner))
+    /// Sets a pixel of the layer, if it is one of the plane.
+    fn set(&self, plane: &mut Plane<P>, x: usize, y: usize, samples: &Samples) {
+        let shifted = |position: usize, shift: i64| {
+            usize::try_from(i64::try_from(position).ok()? + shift).ok()
+        };
+        if let Some(y) = shifted(y, self.shift.1)
+            && let Some(x) = shifted(x, self.shift.0)
+            && plane.stored().holds(x, y)
+        {
+            plane.set(x, y, P::of(&self.toner, samples));
+        }
     }
 }
 
@@ -155,31 +165,10 @@ fn primaries(header: &Header) -> Option<Primaries> {
     Some(points.map(|point| [f64::from(point.0), f64::from(point.1)]))
 }
 
-/// Copies one channel of one row of pixels into place.
-fn take(
-    row: &mut [Samples],
-    slot: usize,
-    channel: &ChannelDescription,
-    line: &LineRef<'_>,
-) -> UnitResult {
-    match channel.sample_type {
-        SampleType::F16 => {
-            for (pixel, sample) in row.iter_mut().zip(line.read_samples::<f16>()) {
-                pixel[slot] = sample?.to_f32();
-            }
-        }
-        SampleType::F32 => {
-            for (pixel, sample) in row.iter_mut().zip(line.read_samples::<f32>()) {
-                pixel[slot] = sample?;
-            }
-        }
-        SampleType::U32 => {
-            for (pixel, sample) in row.iter_mut().zip(line.read_samples::<u32>()) {
-                pixel[slot] = sample? as f32;
-            }
-        }
-    }
-    Ok(())
+fn bytes<const N: usize>(source: &mut Source) -> Result<[u8; N], PictureError> {
+    let mut bytes = [0; N];
+    source.read_exact(&mut bytes).map_err(|error| super::ended(error, Format::OpenExr))?;
+    Ok(bytes)
 }
 
 fn unsupported(reason: &str) -> PictureError {

@@ -12,8 +12,8 @@ use exr::prelude::f16;
 
 use super::super::source::Source;
 use super::{
-    ALPHA, Canvas, Colors, Decoded, Layer, PictureError, Pixel, Samples, Wanted, color, failure,
-    limits, primaries, unsupported,
+    ALPHA, Area, Colors, Decoded, Layer, PictureError, Pixel, Samples, View, Wanted, bytes, color,
+    failure, limits, offsets, primaries, unsupported,
 };
 
 /// Reads a layer of a file whose header has just been read.
@@ -23,7 +23,6 @@ pub(super) fn read<P: Pixel>(
     layer: &Layer<'_>,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
-    let tables = source.stream_position()?;
     let header = layer.header;
     if header.deep || header.blocks != BlockDescription::ScanLines {
         return Err(unsupported(
@@ -32,18 +31,15 @@ pub(super) fn read<P: Pixel>(
     }
     let chroma = layer.chroma.filter(|_| P::COLORED);
     let colors = if chroma.is_some() { Colors::Rgb } else { layer.colors };
-    let mut canvas = Canvas::<P>::new(layer, colors, 4 * 4 + size_of::<P>(), wanted)?;
+    limits::check(header.layer_size.0, header.layer_size.1, 4 * 4 + size_of::<P>())?;
+    let view = View::<P>::of(layer, colors, wanted.tone);
+    let mut picture = view.plane(&Area::whole(view.size))?;
     let mut planes = planes(layer, chroma)?;
     let several = meta.requirements.is_multilayer();
-    let before: usize = meta.headers[..layer.index].iter().map(|header| header.chunk_count).sum();
-    source.seek(SeekFrom::Start(tables.saturating_add(8 * before as u64)))?;
     if header.chunk_count > header.layer_size.1 {
         return Err(unsupported("it has more blocks than rows"));
     }
-    let mut offsets = Vec::with_capacity(header.chunk_count);
-    for _ in 0..header.chunk_count {
-        offsets.push(u64::from_le_bytes(bytes(source)?));
-    }
+    let offsets = offsets(source, meta, layer.index)?;
     for offset in offsets {
         // In a file of several parts, the part's number comes first.
         source.seek(SeekFrom::Start(offset.saturating_add(if several { 4 } else { 0 })))?;
@@ -88,10 +84,10 @@ pub(super) fn read<P: Pixel>(
                 let green = (luminance - weights[0] * red - weights[2] * blue) / weights[1];
                 samples = [red, green, blue, alpha];
             }
-            canvas.set(x, y, &samples);
+            view.set(&mut picture, x, y, &samples);
         }
     }
-    canvas.finish()
+    picture.finish(Some(&view.toner))
 }
 
 /// The samples of one channel.
@@ -219,12 +215,4 @@ fn decompressed(
         .decompress_image_section_from_le(&header, pressed, section, false)
         .map_err(failure)?;
     if block.len() < bytes { Err(unsupported("it has blocks of another size")) } else { Ok(block) }
-}
-
-fn bytes<const N: usize>(source: &mut Source) -> Result<[u8; N], PictureError> {
-    let mut bytes = [0; N];
-    source
-        .read_exact(&mut bytes)
-        .map_err(|error| super::super::ended(error, super::Format::OpenExr))?;
-    Ok(bytes)
 }

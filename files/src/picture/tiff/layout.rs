@@ -1,9 +1,12 @@
 //! How the pixels of a TIFF file lie in its strips or tiles.
 
+use std::ops::Range;
+
 use tiff::ColorType;
 use tiff::decoder::{ChunkType, Decoder};
 use tiff::tags::Tag;
 
+use super::super::area::Area;
 use super::super::plane::Plane;
 use super::super::source::Source;
 use super::relabel::Bits;
@@ -19,6 +22,10 @@ pub(super) struct Layout {
     pub(super) width: usize,
     pub(super) height: usize,
     pub(super) bits: u8,
+    /// Of a pixel, those that nobody asked for among them.
+    pub(super) samples: usize,
+    /// Bits of a pixel as the decoder hands them over, where they are unpacked to 16 bits a sample; 0 if not.
+    packed: usize,
     pub(super) colors: Colors,
     pub(super) alpha: Alpha,
     /// Width and height of a strip or tile.
@@ -38,7 +45,7 @@ pub(super) struct Region {
 }
 
 impl Layout {
-    pub(super) fn of(decoder: &mut Decoder<Source>, more: usize) -> Result<Self, PictureError> {
+    pub(super) fn of(decoder: &mut Decoder<Source>) -> Result<Self, PictureError> {
         let (width, height) = decoder.dimensions().map_err(failure)?;
         let (width, height) = (width as usize, height as usize);
         let color = decoder.colortype().map_err(failure)?;
@@ -72,9 +79,7 @@ impl Layout {
         let planar = decoder.find_tag_unsigned::<u16>(Tag::PlanarConfiguration).map_err(failure)?
             == Some(PLANAR)
             && color.num_samples() > 1;
-        // Checked before the chunk size is asked for; a chunk is never larger than the picture.
         let samples = usize::from(color.num_samples());
-        limits::check(width, height, samples * usize::from(bits).div_ceil(8) + more)?;
         let chunk = match decoder.get_chunk_type() {
             ChunkType::Strip => {
                 let rows = decoder
@@ -91,46 +96,75 @@ impl Layout {
         if chunk.0 == 0 || chunk.1 == 0 {
             return Err(unsupported("strips or tiles without pixels"));
         }
-        Ok(Self { width, height, bits, colors, alpha, chunk, planar })
+        let packed = if bits < 8 { usize::from(bits) } else { 0 };
+        Ok(Self { width, height, bits, samples, packed, colors, alpha, chunk, planar })
     }
 
     /// The same of rows of bits that the decoder takes for bytes.
-    ///
-    /// # Errors
-    /// [`PictureError::TooLarge`].
-    pub(super) fn of_bits(self, kind: &Bits, more: usize) -> Result<Self, PictureError> {
-        limits::check(kind.width, self.height, 2 * kind.samples + more)?;
-        let (colors, alpha) = (kind.colors, kind.alpha);
-        Ok(Self { width: kind.width, chunk: (kind.chunk, self.chunk.1), colors, alpha, ..self })
+    pub(super) fn of_bits(self, kind: &Bits) -> Self {
+        let Bits { samples, colors, alpha, width, .. } = *kind;
+        let (chunk, packed) = ((kind.chunk, self.chunk.1), kind.bits * samples);
+        Self { width, chunk, colors, alpha, samples, bits: 16, packed, ..self }
     }
 
-    /// The regions, in file order.
-    pub(super) fn regions(&self) -> impl Iterator<Item = Region> {
+    /// Checks that all of the picture, of pixels that take four bytes and `more`, is within the memory limit; its
+    /// chunks are never larger.
+    ///
+    /// # Errors
+    /// [`PictureError::Empty`], [`PictureError::TooLarge`].
+    pub(super) fn check(&self, more: usize) -> Result<(), PictureError> {
+        let bytes = self.samples * usize::from(self.bits).div_ceil(8);
+        limits::check(self.width, self.height, bytes + more).map(|_| ())
+    }
+
+    /// Checks that a window and what is decoded for it at a time are.
+    ///
+    /// # Errors
+    /// [`PictureError::Empty`], [`PictureError::TooLarge`], [`PictureError::LargeParts`].
+    pub(super) fn check_window(&self, window: (usize, usize)) -> Result<(), PictureError> {
+        let bytes = match self.packed {
+            0 => self.samples * usize::from(self.bits) / 8,
+            bits => 2 * self.samples + bits.div_ceil(8),
+        };
+        let chunk = (self.chunk.0.min(self.width), self.chunk.1.min(self.height));
+        limits::check_beside(window, chunk, bytes)
+    }
+
+    /// The regions that hold any of these pixels, in file order.
+    pub(super) fn regions(&self, wanted: &Area) -> impl Iterator<Item = Region> {
         let across = self.width.div_ceil(self.chunk.0);
         let down = self.height.div_ceil(self.chunk.1);
+        let touched =
+            |range: &Range<usize>, length: usize| range.start / length..range.end.div_ceil(length);
+        let columns = touched(&wanted.columns, self.chunk.0);
+        let rows = touched(&wanted.rows, self.chunk.1);
         let planes = if self.planar {
             self.colors.count() + usize::from(self.alpha != Alpha::None)
         } else {
             1
         };
-        (0..across * down).map(move |index| {
-            let left = index % across * self.chunk.0;
-            let top = index / across * self.chunk.1;
+        let places = rows.flat_map(move |row| columns.clone().map(move |column| (column, row)));
+        places.map(move |(column, row)| {
+            let (left, top) = (column * self.chunk.0, row * self.chunk.1);
+            let number = |plane: usize| {
+                let before = plane.checked_mul(down)?.checked_add(row)?.checked_mul(across)?;
+                u32::try_from(before.checked_add(column)?).ok()
+            };
             Region {
                 left,
                 top,
                 width: self.chunk.0.min(self.width - left),
                 height: self.chunk.1.min(self.height - top),
-                // There are at most as many chunks as pixels, which fit the memory limit.
-                chunks: (0..planes).map(|plane| (plane * across * down + index) as u32).collect(),
+                // No file has chunks of higher numbers.
+                chunks: (0..planes).map(|plane| number(plane).unwrap_or(u32::MAX)).collect(),
             }
         })
     }
 }
 
 impl Region {
-    /// Sets the pixels of this region, each from its `used` samples. `parts` holds them: all interleaved in one
-    /// part, or each in a part of its own.
+    /// Sets those pixels of this region that are wanted, each from its `used` samples. `parts` holds them: all
+    /// interleaved in one part, or each in a part of its own.
     pub(super) fn fill<P: Pixel, S: Sample>(
         &self,
         plane: &mut Plane<P>,
@@ -149,15 +183,26 @@ impl Region {
         if !complete {
             return Err(unsupported("strips or tiles of an unexpected size"));
         }
+        let all = Area {
+            columns: self.left..self.left + self.width,
+            rows: self.top..self.top + self.height,
+        };
+        let wanted = all.meet(plane.stored());
         let mut samples = Vec::with_capacity(used);
-        for index in 0..count {
-            samples.clear();
-            match parts {
-                [interleaved] => samples.extend_from_slice(&interleaved[index * stride..][..used]),
-                separate => samples.extend(separate[..used].iter().map(|part| part[index])),
+        for y in wanted.rows.clone() {
+            let row = (y - self.top) * self.width;
+            for x in wanted.columns.clone() {
+                let index = row + x - self.left;
+                let value = match parts {
+                    [interleaved] => pixel(&interleaved[index * stride..][..used]),
+                    separate => {
+                        samples.clear();
+                        samples.extend(separate[..used].iter().map(|part| part[index]));
+                        pixel(&samples)
+                    }
+                };
+                plane.set(x, y, value);
             }
-            let (x, y) = (self.left + index % self.width, self.top + index / self.width);
-            plane.set(x, y, pixel(&samples));
         }
         Ok(())
     }
@@ -173,6 +218,8 @@ mod tests {
             width: 10,
             height: 7,
             bits: 8,
+            samples: 3,
+            packed: 0,
             colors: Colors::Rgb,
             alpha: Alpha::None,
             chunk: (4, 3),
@@ -180,7 +227,7 @@ mod tests {
         };
         let mut covered = [[0; 10]; 7];
         let mut chunks = Vec::new();
-        for region in layout.regions() {
+        for region in layout.regions(&Area::whole((10, 7))) {
             for row in &mut covered[region.top..][..region.height] {
                 for pixel in &mut row[region.left..][..region.width] {
                     *pixel += 1;
@@ -191,5 +238,12 @@ mod tests {
         assert_eq!(covered, [[1; 10]; 7]);
         chunks.sort_unstable();
         assert_eq!(chunks, (0..27).collect::<Vec<_>>());
+        // A window touches the regions that hold any of it.
+        for (columns, rows, expected) in
+            [(3..4, 0..1, 1), (3..5, 2..4, 4), (9..10, 6..7, 1), (0..10, 3..6, 3), (4..4, 0..1, 0)]
+        {
+            let area = Area { columns, rows };
+            assert_eq!(layout.regions(&area).count(), expected, "{area:?}");
+        }
     }
 }

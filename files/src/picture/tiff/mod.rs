@@ -8,13 +8,14 @@ mod relabel;
 use std::io::{ErrorKind, Seek as _};
 
 use image::metadata::Orientation;
-use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{TiffError, TiffResult, TiffUnsupportedError};
 
+use super::area::Area;
 use super::color::{self, Space};
 use super::paint::warned;
-use super::plane::{Decoded, Plane};
+use super::plane::{self, Decoded, Plane};
 use super::source::Source;
 use super::{Alpha, Colors, Format, PictureError, Pixel, Sample, Tone, Toner, Wanted, limits};
 use layout::{Layout, Region};
@@ -23,81 +24,177 @@ use relabel::{Meaning, unpacked};
 /// The most bytes of one strip or tile, decoded; some writers make the whole picture one strip.
 const CHUNK_LIMIT: usize = limits::MEMORY_LIMIT as usize;
 
+/// The number of this compression.
+const JPEG: u16 = 7;
+
 /// Reads the largest page of a TIFF file that is not marked as a smaller version of another: gray, color,
 /// palette, CMYK, Lab or JPEG color differences, 1 to 64 bits unsigned or 16 to 64 bits float, with or
 /// without alpha.
 pub(super) fn read<P: Pixel>(
-    mut source: Source,
+    source: Source,
     wanted: Wanted<'_>,
 ) -> Result<Decoded<P>, PictureError> {
-    let page = pages::choose(&mut source)?;
-    let (mut source, meaning) = match &page {
-        Some(page) => relabel::relabeled(source, page)?,
-        // What is wrong is for the decoder to say.
-        None => (source, Meaning::Stored),
-    };
-    source.rewind()?;
-    let mut decoder_limits = Limits::default();
-    decoder_limits.decoding_buffer_size = CHUNK_LIMIT;
-    decoder_limits.intermediate_buffer_size = CHUNK_LIMIT;
-    let mut decoder = Decoder::new(source).map_err(failure)?.with_limits(decoder_limits);
-    let more = size_of::<P>() - size_of::<f32>();
-    let mut file = Layout::of(&mut decoder, more)?;
-    match &meaning {
-        Meaning::Bits(kind) => file = file.of_bits(kind, more)?,
-        Meaning::Palette(_) => file.colors = Colors::Rgb,
-        Meaning::Stored | Meaning::Lab(_) => {}
-    }
-    let float = decoder
-        .find_tag_unsigned_vec::<u16>(Tag::SampleFormat)
-        .map_err(failure)?
-        .is_some_and(|formats| formats.first() == Some(&3));
-    if wanted.radiance && !(float && matches!(file.colors, Colors::Gray | Colors::Rgb)) {
-        return Err(PictureError::NotRadiance(Format::Tiff));
-    }
-    if wanted.tone.exposure.is_some() && !float {
-        return Err(PictureError::NoExposure(Format::Tiff));
-    }
-    // Written as BYTE, SHORT or LONG; what is out of range turns nothing.
-    let orientation = decoder
-        .find_tag_unsigned::<u32>(Tag::Orientation)
-        .ok()
-        .flatten()
-        .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
-        .unwrap_or(Orientation::NoTransforms);
-    let mut warnings = Vec::new();
-    let profile = decoder.find_tag(Tag::IccProfile).ok().flatten();
-    let space = match profile.and_then(|value| value.into_u8_vec().ok()) {
-        // Lab says all of a color itself.
-        Some(profile) if !matches!(meaning, Meaning::Lab(_)) => {
-            let found = color::profile(&profile, file.colors.count());
-            warned("its color profile", found, &mut warnings)
-        }
-        _ => Space::default(),
-    };
-    let mut plane = Plane::new((file.width, file.height), orientation, P::NOTHING)?;
-    let mut density = |tag| decoder.find_tag(tag).ok().flatten().and_then(ratio);
-    if let (Some(across), Some(down)) = (density(Tag::XResolution), density(Tag::YResolution)) {
-        plane.set_aspect(down / across);
-    }
-    plane.warn(warnings);
+    let mut page = Page::open(source, wanted)?;
+    page.layout.check(size_of::<P>() - size_of::<f32>())?;
+    let decoded = page.window(&Area::whole(page.size()))?;
+    Ok(Decoded { aspect: page.aspect, warnings: page.warnings, ..decoded })
+}
 
-    let mut painter = Painter {
-        tone: wanted.tone,
-        colors: file.colors,
-        alpha: file.alpha,
-        space,
-        meaning: &meaning,
-        toner: None,
-        palette: Vec::new(),
+/// The page of a file that [`read`] reads, opened to be read by windows.
+pub(super) struct Page<P> {
+    decoder: Decoder<Source>,
+    layout: Layout,
+    orientation: Orientation,
+    /// Width of an upright pixel over its height.
+    pub(super) aspect: f64,
+    /// As of [`super::Picture`].
+    pub(super) warnings: Vec<String>,
+    float: bool,
+    painter: Painter<P>,
+    /// Where each strip or tile ends, if these are JPEG files, which a decoder fills up that end early.
+    ends: Vec<u64>,
+    /// Of the file.
+    length: u64,
+}
+
+impl<P: Pixel> Page<P> {
+    /// Reads what there is beside the pixels.
+    pub(super) fn open(mut source: Source, wanted: Wanted<'_>) -> Result<Self, PictureError> {
+        let page = pages::choose(&mut source)?;
+        let (mut source, meaning) = match &page {
+            Some(page) => relabel::relabeled(source, page)?,
+            // What is wrong is for the decoder to say.
+            None => (source, Meaning::Stored),
+        };
+        let length = source.length()?;
+        source.rewind()?;
+        let mut decoder_limits = Limits::default();
+        decoder_limits.decoding_buffer_size = CHUNK_LIMIT;
+        decoder_limits.intermediate_buffer_size = CHUNK_LIMIT;
+        let mut decoder = Decoder::new(source).map_err(failure)?.with_limits(decoder_limits);
+        let mut layout = Layout::of(&mut decoder)?;
+        match &meaning {
+            Meaning::Bits(kind) => layout = layout.of_bits(kind),
+            Meaning::Palette(_) => layout.colors = Colors::Rgb,
+            Meaning::Stored | Meaning::Lab(_) => {}
+        }
+        let float = decoder
+            .find_tag_unsigned_vec::<u16>(Tag::SampleFormat)
+            .map_err(failure)?
+            .is_some_and(|formats| formats.first() == Some(&3));
+        if wanted.radiance && !(float && matches!(layout.colors, Colors::Gray | Colors::Rgb)) {
+            return Err(PictureError::NotRadiance(Format::Tiff));
+        }
+        if wanted.tone.exposure.is_some() && !float {
+            return Err(PictureError::NoExposure(Format::Tiff));
+        }
+        // Written as BYTE, SHORT or LONG; what is out of range turns nothing.
+        let orientation = decoder
+            .find_tag_unsigned::<u32>(Tag::Orientation)
+            .ok()
+            .flatten()
+            .and_then(|number| Orientation::from_exif(u8::try_from(number).ok()?))
+            .unwrap_or(Orientation::NoTransforms);
+        let mut warnings = Vec::new();
+        let profile = decoder.find_tag(Tag::IccProfile).ok().flatten();
+        let space = match profile.and_then(|value| value.into_u8_vec().ok()) {
+            // Lab says all of a color itself.
+            Some(profile) if !matches!(meaning, Meaning::Lab(_)) => {
+                let found = color::profile(&profile, layout.colors.count());
+                warned("its color profile", found, &mut warnings)
+            }
+            _ => Space::default(),
+        };
+        let mut density = |tag| decoder.find_tag(tag).ok().flatten().and_then(ratio);
+        let aspect = match (density(Tag::XResolution), density(Tag::YResolution)) {
+            (Some(across), Some(down)) => plane::upright_aspect(down / across, orientation),
+            _ => 1.0,
+        };
+        let painter = Painter {
+            tone: wanted.tone,
+            colors: layout.colors,
+            alpha: layout.alpha,
+            space,
+            meaning,
+            toner: None,
+            palette: Vec::new(),
+        };
+        let compression = decoder.find_tag_unsigned::<u16>(Tag::Compression).map_err(failure)?;
+        let ends = if compression == Some(JPEG) { ends(&mut decoder)? } else { Vec::new() };
+        Ok(Self { decoder, layout, orientation, aspect, warnings, float, painter, ends, length })
+    }
+
+    /// Pixels across and down, upright, as they are stored.
+    pub(super) fn size(&self) -> (usize, usize) {
+        plane::upright((self.layout.width, self.layout.height), self.orientation)
+    }
+
+    /// The least and greatest brightness of a float file's pixels that were read.
+    pub(super) fn range(&self) -> Option<(f64, f64)> {
+        self.painter.toner.as_ref().filter(|_| self.float).and_then(Toner::range)
+    }
+
+    /// The pixels of a window, which must lie in the picture. Strips and tiles that hold none of them are not read.
+    ///
+    /// # Errors
+    /// [`PictureError::TooLarge`] and [`PictureError::LargeParts`] before anything is read.
+    pub(super) fn window(&mut self, window: &Area) -> Result<Decoded<P>, PictureError> {
+        self.layout.check_window(window.size())?;
+        let size = (self.layout.width, self.layout.height);
+        let mut plane = Plane::of_window(size, self.orientation, P::NOTHING, window)?;
+        for region in self.layout.regions(&plane.stored().clone()) {
+            let end = |chunk: &u32| self.ends.get(*chunk as usize);
+            if region.chunks.iter().filter_map(end).any(|&end| end > self.length) {
+                return Err(PictureError::Truncated(Format::Tiff));
+            }
+            let chunks: Vec<DecodingResult> = region
+                .chunks
+                .iter()
+                .map(|&chunk| self.decoder.read_chunk(chunk))
+                .collect::<TiffResult<_>>()
+                .map_err(failure)?;
+            self.painter.paint(&mut plane, &self.layout, &region, &chunks)?;
+        }
+        plane.finish(self.painter.toner.as_ref().filter(|_| self.float))
+    }
+}
+
+/// Where each strip or tile ends.
+fn ends(decoder: &mut Decoder<Source>) -> Result<Vec<u64>, PictureError> {
+    let (offsets, lengths) = match decoder.get_chunk_type() {
+        ChunkType::Strip => (Tag::StripOffsets, Tag::StripByteCounts),
+        ChunkType::Tile => (Tag::TileOffsets, Tag::TileByteCounts),
     };
-    for region in file.regions() {
-        let chunks: Vec<DecodingResult> = region
-            .chunks
-            .iter()
-            .map(|&chunk| decoder.read_chunk(chunk))
-            .collect::<TiffResult<_>>()
-            .map_err(failure)?;
+    let mut of = |tag| decoder.get_tag_u64_vec(tag).map_err(failure);
+    let (offsets, lengths) = (of(offsets)?, of(lengths)?);
+    Ok(offsets
+        .into_iter()
+        .zip(lengths)
+        .map(|(start, length)| start.saturating_add(length))
+        .collect())
+}
+
+/// What turns samples into pixels.
+struct Painter<P> {
+    tone: Tone,
+    colors: Colors,
+    alpha: Alpha,
+    space: Space,
+    meaning: Meaning,
+    /// Both made for the first samples.
+    toner: Option<Toner>,
+    palette: Vec<Option<P>>,
+}
+
+impl<P: Pixel> Painter<P> {
+    /// Sets the pixels of a region from its decoded chunks.
+    fn paint(
+        &mut self,
+        plane: &mut Plane<P>,
+        layout: &Layout,
+        region: &Region,
+        chunks: &[DecodingResult],
+    ) -> Result<(), PictureError> {
         macro_rules! paint {
             ($variant:ident) => {{
                 let parts: Option<Vec<_>> = chunks
@@ -108,60 +205,44 @@ pub(super) fn read<P: Pixel>(
                     })
                     .collect();
                 let parts = parts.ok_or_else(|| unsupported("samples of several types"))?;
-                painter.paint(&mut plane, &region, &parts)?;
+                self.fill(plane, region, &parts)
             }};
         }
-        match (chunks.first(), &meaning) {
+        match (chunks.first(), &self.meaning) {
             (Some(DecodingResult::U8(packed)), Meaning::Bits(kind)) => {
                 let shape = [kind.row(), region.width * kind.samples, region.height];
                 let mut samples = unpacked(packed, shape, kind.bits, 65535);
                 if kind.inverted {
                     samples.iter_mut().for_each(|sample| *sample = 65535 - *sample);
                 }
-                painter.paint(&mut plane, &region, &[&samples])?;
+                self.fill(plane, region, &[&samples])
             }
-            (Some(DecodingResult::U8(packed)), _) if file.bits < 8 => {
-                let bits = usize::from(file.bits);
-                let number = matches!(meaning, Meaning::Palette(_));
+            (Some(DecodingResult::U8(packed)), _) if layout.bits < 8 => {
+                let bits = usize::from(layout.bits);
+                let number = matches!(self.meaning, Meaning::Palette(_));
                 let full = if number { (1 << bits) - 1 } else { 65535 };
                 let shape = [(region.width * bits).div_ceil(8), region.width, region.height];
                 let samples = unpacked(packed, shape, bits, full);
-                painter.paint(&mut plane, &region, &[&samples])?;
+                self.fill(plane, region, &[&samples])
             }
             (Some(DecodingResult::U8(_)), _) => paint!(U8),
             (Some(DecodingResult::U16(_)), _) => paint!(U16),
             (Some(DecodingResult::U32(_)), _) => paint!(U32),
             (Some(DecodingResult::U64(_)), _) => paint!(U64),
             (Some(DecodingResult::F16(_) | DecodingResult::F32(_) | DecodingResult::F64(_)), _)
-                if !matches!(file.colors, Colors::Gray | Colors::Rgb) =>
+                if !matches!(layout.colors, Colors::Gray | Colors::Rgb) =>
             {
-                return Err(unsupported("float inks"));
+                Err(unsupported("float inks"))
             }
             (Some(DecodingResult::F16(_)), _) => paint!(F16),
             (Some(DecodingResult::F32(_)), _) => paint!(F32),
             (Some(DecodingResult::F64(_)), _) => paint!(F64),
-            _ => return Err(unsupported("signed samples, which have no white,")),
+            _ => Err(unsupported("signed samples, which have no white,")),
         }
     }
-    let toner = painter.toner.filter(|_| float);
-    plane.finish(toner.as_ref())
-}
 
-/// What turns samples into pixels.
-struct Painter<'a, P> {
-    tone: Tone,
-    colors: Colors,
-    alpha: Alpha,
-    space: Space,
-    meaning: &'a Meaning,
-    /// Both made for the first samples.
-    toner: Option<Toner>,
-    palette: Vec<Option<P>>,
-}
-
-impl<P: Pixel> Painter<'_, P> {
-    /// Sets the pixels of a region.
-    fn paint<S: Sample>(
+    /// Sets them from its samples.
+    fn fill<S: Sample>(
         &mut self,
         plane: &mut Plane<P>,
         region: &Region,
