@@ -101,11 +101,8 @@ fn in_cells(
     (index, of): (usize, usize),
     stop: &Stop,
 ) -> PyResult<Vec<DVec2>> {
-    let &(width, height, _) = image;
-    let mut row_sums = Vec::new();
-    for row in 0..height {
-        row_sums.extend_from_slice(window(image, 0..width, row..row + 1)?.row_sums());
-    }
+    let &(width, height, ref pixels) = image;
+    let row_sums: Vec<f64> = pixels.chunks_exact(width).map(Pixels::sum_of_row).collect();
     let mean = Pixels::mean_of_rows(width, &row_sums);
     let mosaic = Mosaic::new((width, height), mean, n as f64).map_err(error::map)?;
     let placement = Placement::new(mosaic.domain(), seed);
@@ -124,18 +121,18 @@ fn in_cells(
 
 /// The pixels of some columns and rows of an image.
 fn window(
-    (width, height, pixels): &Image,
+    (width, _, pixels): &Image,
     columns: Range<usize>,
     rows: Range<usize>,
 ) -> PyResult<Pixels> {
-    let size = (columns.len().min(*width), rows.len().min(*height));
+    let (across, down) = (columns.len(), rows.len());
     let mut values = Vec::new();
-    let count = size.0.saturating_mul(size.1);
-    values.try_reserve_exact(count).map_err(|_| error::memory(count.saturating_mul(4)))?;
-    for row in pixels.chunks_exact(*width).skip(rows.start).take(size.1) {
-        values.extend(row.iter().skip(columns.start).take(size.0));
+    let bytes = across * down * size_of::<f32>();
+    values.try_reserve_exact(across * down).map_err(|_| error::memory(bytes))?;
+    for row in pixels.chunks_exact(*width).skip(rows.start).take(down) {
+        values.extend(row.iter().skip(columns.start).take(across));
     }
-    Pixels::new(size.0, size.1, values, InvalidPixels::Reject).map_err(error::map)
+    Pixels::new(across, down, values, InvalidPixels::Reject).map_err(error::map)
 }
 
 /// Dots that are exact, or on fixed centers, as the sampling gives them.
