@@ -48,8 +48,8 @@ def stipple(
         Chooses which of many equally good arrangements is made.
     part : (i, count), optional
         Only part ``i`` of ``count``, from 0, with ``refine=0``: all parts one after the other are the whole, bit
-        for bit. For several machines; a part is some cells of a grid over the image, of a million dots or
-        four million pixels at most each, so that small pictures are in one part and the others are empty.
+        for bit. For several machines. Parts are made of cells of some million dots, so that pictures of
+        fewer are all in the last part.
     invert : bool
         Put dots where the picture is light, to be drawn white on black.
     linear : bool
