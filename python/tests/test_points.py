@@ -194,6 +194,20 @@ def test_dots_draw_the_picture(camera):
     assert (twelvefold.stipple(camera, 200, **wish)[:100] == beginning).all()
 
 
+def test_parts_of_a_picture_one_after_the_other_are_the_whole():
+    # More dots than a cell has: there are 4.
+    n = 1_100_000
+    y, x = np.mgrid[:150, :200]
+    picture = (x * y % 251).astype("uint8")
+    wish = dict(refine=0, seed=3, invert=True)
+    whole = twelvefold.stipple(picture, n, **wish)
+    assert abs(len(whole) / n - 1) < 0.02
+    for count in [1, 3, 5]:
+        parts = [twelvefold.stipple(picture, n, part=(i, count), **wish) for i in range(count)]
+        assert sorted(map(len, parts))[-1] < (0.6 if count > 1 else 1.1) * n
+        assert np.concatenate(parts).tobytes() == whole.tobytes()
+
+
 def test_transparent_parts_get_no_dots():
     image = np.zeros((20, 20, 4), "uint8")
     image[:, 10:, 3] = 255

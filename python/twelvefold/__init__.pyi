@@ -30,6 +30,7 @@ def stipple(
     exact: bool = False,
     relaxed: bool = True,
     seed: SupportsIndex = 0,
+    part: tuple[int, int] | None = None,
     invert: bool = False,
     linear: bool = False,
     black: float = 0,

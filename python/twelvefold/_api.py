@@ -14,6 +14,7 @@ def stipple(
     exact=False,
     relaxed=True,
     seed=0,
+    part=None,
     invert=False,
     linear=False,
     black=0,
@@ -45,6 +46,10 @@ def stipple(
         of which each beginning is itself a good stippling.
     seed : int, 0 to 2**64 - 1
         Chooses which of many equally good arrangements is made.
+    part : (i, count), optional
+        Only part ``i`` of ``count``, from 0, with ``refine=0``: all parts one after the other are the whole, bit
+        for bit. For several machines. Parts are made of cells of some million dots, so that pictures of
+        fewer are all in the last part.
     invert : bool
         Put dots where the picture is light, to be drawn white on black.
     linear : bool
@@ -84,9 +89,13 @@ def stipple(
     ((500, 2), dtype('float32'))
     >>> bool((dots[:, 0] < 100).mean() > 0.7)
     True
+
+    On one of four machines:
+
+    >>> dots = twelvefold.stipple(ramp, 500, refine=0, part=(2, 4))
     """
     return _native.stipple(
-        image, n, refine, best, exact, relaxed, seed, invert, linear, black, white, gamma
+        image, n, refine, best, exact, relaxed, seed, part, invert, linear, black, white, gamma
     )
 
 
