@@ -108,7 +108,10 @@ impl<P: Pixel> Blocks<P> {
         let mut plane = view.plane(window)?;
         let wanted = view.of_layer(window);
         for block in blocks.iter().filter(|block| !block.area.meet(&wanted).is_empty()) {
-            source.seek(SeekFrom::Start(block.offset))?;
+            // A seek to where it is would read anew what is buffered.
+            if source.stream_position()? != block.offset {
+                source.seek(SeekFrom::Start(block.offset))?;
+            }
             let chunk = Chunk::read(source, meta).map_err(failure)?;
             let found = UncompressedBlock::decompress_chunk(chunk, meta, false).map_err(failure)?;
             let start = (block.area.columns.start, block.area.rows.start);
