@@ -35,7 +35,8 @@ const PIXELS: f64 = 4_194_304.0;
 /// // Once: the mean.
 /// let (width, height, mut row_sums) = (2560, 2048, Vec::new());
 /// for first in (0..height).step_by(256) {
-///     row_sums.extend_from_slice(read(0..width, first..first + 256)?.row_sums());
+///     let band = read(0..width, first..first + 256)?;
+///     row_sums.extend(band.values().chunks(width).map(Pixels::sum_of_row));
 /// }
 /// let mosaic = Mosaic::new((width, height), Pixels::mean_of_rows(width, &row_sums), 3000.0)?;
 /// assert_eq!(mosaic.cells().len(), 4);

@@ -12,11 +12,16 @@ use twelvefold_lab::measure::Window;
 
 use crate::format::Format;
 use crate::page::options::PaperOptions;
-use twelvefold_stipple::dots::Centers;
+use crate::part::Part;
+use crate::tone::{ToneOptions, positive};
 use twelvefold_stipple::page::length::Length;
+use twelvefold_stipple::wish::Centers;
 
-/// The most dots that one run draws.
-pub(crate) const MAX_POINTS: u64 = 50_000_000;
+/// The most dots that are drawn.
+pub(crate) const MAX_POINTS: u64 = 4_000_000_000;
+
+/// The most that are refined, which takes a hundred bytes a dot.
+pub(crate) const MAX_REFINED: u64 = 50_000_000;
 
 /// The most points that are counted exactly: they are sorted in memory, some 90 bytes each.
 pub(crate) const MAX_EXACT: u64 = 10_000_000;
@@ -34,6 +39,15 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
     Stipple(StippleOptions),
+    /// Say of a photograph what its parts must know: how large it is, how dark, and how bright.
+    ///
+    /// For `stipple --part --survey`: it is read once, instead of once a part.
+    Survey(SurveyOptions),
+    /// Put the parts of a drawing together.
+    ///
+    /// CSV and SVG parts are written one after the other; of NPY parts one array is made. What is no part of one
+    /// file, or out of order as far as can be seen, is an error.
+    Merge(MergeOptions),
     /// Choose directions towards the light of an environment map, as CSV.
     ///
     /// The columns are x,y,z,pdf,red,green,blue: a direction of length 1; its probability density per
@@ -288,25 +302,8 @@ pub(crate) struct StippleOptions {
     /// infinity is an error.
     pub(crate) photo: PathBuf,
 
-    /// The gray level, of 255, from which on the photograph counts as white: 250 for paper that was
-    /// scanned a little gray.
-    ///
-    /// Levels are encoded sRGB also with --linear, which takes the light of this level as white.
-    #[arg(long, value_name = "LEVEL", value_parser = level)]
-    pub(crate) white: Option<f64>,
-
-    /// The gray level, of 255, up to which the photograph counts as black; below that of --white.
-    #[arg(long, value_name = "LEVEL", value_parser = level)]
-    pub(crate) black: Option<f64>,
-
-    /// Lighten (above 1) or darken the middle: brightness from 0 to 1, after --black and --white, is
-    /// raised to 1/GAMMA.
-    #[arg(long, value_name = "GAMMA", value_parser = positive)]
-    pub(crate) gamma: Option<f64>,
-
-    /// Multiply the light of a float file by 2 to this power, before anything else.
-    #[arg(long, value_name = "STOPS", value_parser = stops, allow_hyphen_values = true)]
-    pub(crate) exposure: Option<f64>,
+    #[command(flatten)]
+    pub(crate) tone: ToneOptions,
 
     /// Which layer of an OpenEXR file is drawn, such as ViewLayer.Combined [default: the one without a
     /// name, or the only one].
@@ -323,7 +320,7 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
 
-    /// How many dots, at most 50,000,000 [default: a ninth of the sum of all pixels' darkness from 0 to 1,
+    /// How many dots, at most 4,000,000,000, and 50,000,000 that are refined [default: a ninth of the sum of all pixels' darkness from 0 to 1,
     /// that is one every 3 pixels where the photograph is black; at least 3,000 where that many fit four
     /// to a pixel, at most 30,000].
     ///
@@ -380,20 +377,28 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_enum, value_name = "HOW")]
     pub(crate) dot_gain: Option<DotGain>,
 
-    /// Put dots where the photograph is light, and draw them white on black.
-    #[arg(long)]
-    pub(crate) invert: bool,
-
-    /// Follow linear light instead of encoded values: averaged over an area, the dots then reflect as
-    /// much light as the photograph.
-    #[arg(long)]
-    pub(crate) linear: bool,
-
     /// Size of the SVG, PNG or PDF picture, as a multiple of the photograph's; dots grow with it [default: 1].
     ///
     /// Not for CSV and NPY, whose unit without `--page` is always the photograph's pixel.
     #[arg(long, value_name = "FACTOR", value_parser = positive)]
     pub(crate) scale: Option<f64>,
+
+    /// Draw the I-th of N parts of the dots, as one of several machines: I from 1 to N, CSV, SVG or NPY, `--refine 0`.
+    ///
+    /// All parts of CSV or SVG, one after the other, are the file that would be written without this; `twelvefold
+    /// merge` puts parts of all three together. Of a TIFF or OpenEXR file that is stored in strips or tiles, a part
+    /// reads what it needs. See docs/farm.md.
+    #[arg(
+        long,
+        value_name = "I/N",
+        conflicts_with_all = ["best", "exact", "pen", "pens", "line", "marks", "order"]
+    )]
+    pub(crate) part: Option<Part>,
+
+    /// What `twelvefold survey` wrote about the photograph, with the same options for its tone. Without it, each part
+    /// reads all of the photograph first.
+    #[arg(long, value_name = "FILE", requires = "part")]
+    pub(crate) survey: Option<PathBuf>,
 
     /// Say nothing but errors.
     #[arg(short, long)]
@@ -401,6 +406,40 @@ pub(crate) struct StippleOptions {
 
     #[command(flatten)]
     pub(crate) paper: PaperOptions,
+}
+
+/// Options of `twelvefold survey`.
+#[derive(Debug, Args)]
+pub(crate) struct SurveyOptions {
+    /// The photograph.
+    pub(crate) photo: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) tone: ToneOptions,
+
+    /// Which layer of an OpenEXR file is drawn.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) layer: Option<String>,
+
+    /// Where the survey goes, or `-` for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+
+    /// Say nothing but errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// Options of `twelvefold merge`.
+#[derive(Debug, Args)]
+pub(crate) struct MergeOptions {
+    /// All parts, the first one first.
+    #[arg(required = true, num_args = 1..)]
+    pub(crate) parts: Vec<PathBuf>,
+
+    /// Where the file goes, or `-` for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
 }
 
 /// What is done about ink that overlaps.
@@ -431,30 +470,6 @@ impl CentersName {
     }
 }
 
-/// Reads a gray level.
-fn level(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(level) if (0.0..=255.0).contains(&level) => Ok(level),
-        _ => Err("not a number from 0 to 255".to_owned()),
-    }
-}
-
-/// Reads a number of stops.
-fn stops(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(stops) if (-128.0..=128.0).contains(&stops) => Ok(stops),
-        _ => Err("not a number from -128 to 128".to_owned()),
-    }
-}
-
-/// Reads a finite number above zero.
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-        _ => Err("not a finite number above zero".to_owned()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -471,14 +486,6 @@ mod tests {
         assert_eq!(infinite("clamp=65504"), Ok(InfiniteRadiance::Clamp(65504.0)));
         for bad in ["", "clamp", "clamp=", "clamp=-1", "clamp=inf", "clamp=NaN", "Zero"] {
             assert!(infinite(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn numbers_must_be_finite_and_above_zero() {
-        assert_eq!(positive("2.5"), Ok(2.5));
-        for bad in ["0", "-1", "NaN", "inf", "1e999", "", "3px"] {
-            assert!(positive(bad).is_err(), "{bad}");
         }
     }
 }

@@ -42,7 +42,7 @@ impl Format {
             Self::Svg => Box::new(Svg::new(out, look)?),
             Self::Png => Box::new(Png::new(out, look)?),
             Self::Pdf => Box::new(Pdf::new(out, look)?),
-            Self::Csv => Box::new(Csv::new(out, look.named)?),
+            Self::Csv => Box::new(Csv::new(out, look)?),
             Self::Npy => Box::new(Npy::new(out, look.named)),
         })
     }

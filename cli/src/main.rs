@@ -6,8 +6,12 @@ mod command;
 mod format;
 mod order;
 mod page;
+mod part;
 mod pens;
+mod report;
 mod stipple;
+mod survey;
+mod tone;
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -17,7 +21,7 @@ use clap::Parser as _;
 use twelvefold_files::failure::Failure;
 
 use crate::args::{Arguments, Command};
-use crate::command::{envmap, measure, tables, tiling};
+use crate::command::{envmap, measure, merge, tables, tiling};
 
 fn main() -> ExitCode {
     match process(&Arguments::parse()) {
@@ -32,7 +36,12 @@ fn main() -> ExitCode {
 
 fn process(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
-        Command::Stipple(options) => command::stipple::run(options),
+        Command::Stipple(options) => match options.part {
+            Some(part) => command::part::run(options, part),
+            None => command::stipple::run(options),
+        },
+        Command::Survey(options) => command::survey::run(options),
+        Command::Merge(options) => merge::run(options),
         Command::Envmap(options) => envmap::run(options),
         Command::Measure(options) => measure::run(options),
         Command::Tables => tables::run(),

@@ -177,14 +177,14 @@ impl Pixels {
         self.sum / self.values.len() as f64
     }
 
-    /// The sum of each row.
+    /// The sum of a row of an image.
     #[must_use]
-    pub fn row_sums(&self) -> &[f64] {
-        &self.row_sums
+    pub fn sum_of_row(row: &[f32]) -> f64 {
+        sum(row)
     }
 
-    /// The mean pixel of an image from the sums of all its rows, which may have come in several pieces: to the bit
-    /// the [`mean`](Self::mean) of the image in one piece. 0 without pixels.
+    /// The mean pixel of an image from the [sums](Self::sum_of_row) of all its rows, which may have come in several
+    /// pieces: to the bit the [`mean`](Self::mean) of the image in one piece. 0 without pixels.
     #[must_use]
     pub fn mean_of_rows(width: usize, row_sums: &[f64]) -> f64 {
         let pixels = width.saturating_mul(row_sums.len());

@@ -1,7 +1,7 @@
 //! Photographs as dots, from the picture to the file: what the program and the page share.
 //!
-//! `budget`: how many dots, and how large. `gain`: what ink covers. `dots`: where they go. `page`: what they are
-//! drawn on. `drawing`: the files.
+//! `wish`: what is wanted. `budget`: how many dots, and how large. `gain`: what ink covers. `raw`: where they go. `dots`: and are refined to.
+//! `page`: what they are drawn on. `drawing`: the files.
 
 #![allow(
     missing_docs,
@@ -11,5 +11,8 @@
 pub mod budget;
 pub mod dots;
 pub mod drawing;
+pub mod error;
 pub mod gain;
 pub mod page;
+pub mod raw;
+pub mod wish;

@@ -7,7 +7,7 @@ use js_sys::Error;
 use twelvefold_files::picture::Picture;
 use twelvefold_stipple::budget::default_dot_size;
 use twelvefold_stipple::dots::Wish;
-use twelvefold_stipple::drawing::{Csv, Drawing, Layer, Look, Png, Svg};
+use twelvefold_stipple::drawing::{Csv, Drawing, Layer, Look, Piece, Png, Svg};
 use twelvefold_stipple::page::color::Color;
 use twelvefold_stipple::page::mark::Mark;
 use twelvefold_stipple::page::sheet::Sheet;
@@ -52,7 +52,7 @@ impl Stippled {
         let drawing: Box<dyn Drawing + '_> = match kind {
             "svg" => Box::new(Svg::new(&mut bytes, &look).map_err(plain)?),
             "png" => Box::new(Png::new(&mut bytes, &look).map_err(plain)?),
-            "csv" => Box::new(Csv::new(&mut bytes, look.named).map_err(plain)?),
+            "csv" => Box::new(Csv::new(&mut bytes, &look).map_err(plain)?),
             _ => return Err(plain(format!("{kind} files are not written"))),
         };
         self.draw(drawing, &look).map_err(plain)?;
@@ -83,6 +83,7 @@ impl Stippled {
     fn look(&self, title: &str, dot_size: f64, scale: f64) -> Look {
         let width = if dot_size > 0.0 { dot_size } else { default_dot_size(self.density) };
         Look {
+            piece: Piece::WHOLE,
             sheet: sheet(&self.picture, scale),
             mark: Mark::Disc(width),
             spacing: 1.0 / self.density.sqrt(),

@@ -10,6 +10,7 @@ use twelvefold::light::{
 use twelvefold::{EnvironmentError, EnvironmentMap, EnvironmentSample, Limits, Placement};
 
 use crate::args::{EnvmapOptions, FilterName, Method, Nan, Negative};
+use crate::report;
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
 use twelvefold_files::picture;
@@ -23,7 +24,7 @@ pub(crate) fn run(options: &EnvmapOptions) -> Result<(), Failure> {
             return Err(Failure::about("--filter bilinear", "needs --method sobol"));
         }
     };
-    let of_map = |reason: Box<dyn std::error::Error>| super::of_input(&options.map, reason);
+    let of_map = |reason: Box<dyn std::error::Error>| report::of_input(&options.map, reason);
     let standard = options.output.as_os_str() == "-";
     let of_output = |error: OutputError| {
         if standard {
@@ -40,7 +41,7 @@ pub(crate) fn run(options: &EnvmapOptions) -> Result<(), Failure> {
     };
 
     let picture = picture::read_radiance(&options.map).map_err(|error| of_map(error.into()))?;
-    super::warn(&options.map, &picture.warnings);
+    report::warn(&options.map, &picture.warnings);
     let map = EnvironmentMap::new(picture.width, picture.height, picture.pixels, policy(options))
         .map_err(|error| of_map(Box::new(BadMap(error))))?
         .in_frame(options.frame.frame().rotated(options.rotate));

@@ -11,6 +11,7 @@ use twelvefold_lab::measure::periodogram::Periodogram;
 use twelvefold_lab::measure::{MeasureError, Window, fidelity, hexagonal_distance, spectrum};
 
 use crate::args::MeasureOptions;
+use crate::report;
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
 use twelvefold_files::picture::{self, Tone};
@@ -37,8 +38,8 @@ pub(crate) fn run(options: &MeasureOptions) -> Result<(), Failure> {
         Some(path) => {
             let tone = Tone { linear: options.linear, invert: options.invert, ..Tone::default() };
             let picture =
-                picture::read(path, tone).map_err(|error| super::of_input(path, error))?;
-            super::warn(path, &picture.warnings);
+                picture::read(path, tone).map_err(|error| report::of_input(path, error))?;
+            report::warn(path, &picture.warnings);
             Some(picture)
         }
     };

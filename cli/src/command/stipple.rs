@@ -3,40 +3,40 @@
 //! The photograph becomes importance; [`Plan`] settles how many dots there are and how large; they are placed
 //! and refined, kept apart and put in order where a pen draws them, and written one by one.
 
-use std::fmt;
-use std::io::{self, ErrorKind, Write as _};
-use std::path::Path;
+use std::io;
 
 use glam::DVec2;
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
-use twelvefold_files::picture::{self, Levels, Picture, Tone};
+use twelvefold_files::picture::{self, Picture};
 use twelvefold_files::progress::Progress;
+use twelvefold_stipple::dots;
+use twelvefold_stipple::drawing::{DrawingError, Layer};
+use twelvefold_stipple::error::DotsError;
+use twelvefold_stipple::page::color::Color;
+use twelvefold_stipple::page::sheet::STEPS;
+use twelvefold_stipple::raw::Step;
+use twelvefold_stipple::wish::{Count, Wish};
 
-use crate::args::{DotGain, StippleOptions};
+use crate::args::StippleOptions;
 use crate::format::Format;
 use crate::order;
 use crate::page::apart::keep_apart;
 use crate::page::options::Order;
 use crate::pens::{Inks, InksError, Pens};
+use crate::report;
+use crate::stipple::drawn::{DrawError, layer, open, put};
 use crate::stipple::plan::{PEN_SHARE, PENS_SHARE, Plan, streams_unasked};
-use twelvefold_stipple::dots::{self, Count, DotsError, Wish};
-use twelvefold_stipple::drawing::{Drawing, DrawingError, Layer};
-use twelvefold_stipple::gain;
-use twelvefold_stipple::page::color::Color;
-use twelvefold_stipple::page::sheet::STEPS;
+use crate::stipple::tones::{Blank, importance};
+use crate::survey::Darkness;
 
 /// Runs the subcommand.
 pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let (format, mut output) = open(options)?;
-    if let Some(option) = idle(options, format) {
-        let format = format!("{format:?}").to_uppercase();
-        return Err(Failure::about(option, format!("has no effect on {format}; leave it out")));
-    }
     let (picture, inks) = match &options.paper.pens {
         None => {
             let mut picture = read(options)?;
-            prepare(&mut picture, options, format);
+            importance(options, format).of_darkness(&mut picture.importance);
             (picture, None)
         }
         Some(pens) => {
@@ -44,7 +44,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
             (picture, Some(inks))
         }
     };
-    let plan = Plan::new(options, &picture, format)
+    let plan = Plan::new(options, &Darkness::of(&picture), format)
         .map_err(|error| Failure::about(error.option(), error))?;
     let mut progress = Progress::new(plan.wish.count.number(), options.quiet);
     let drawn = draw(format, (picture, inks), &plan, &mut output, &mut progress);
@@ -52,7 +52,7 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
     let drawn = match drawn {
         Ok(drawn) => drawn,
         Err(DotsError::Taker(DrawError::Drawing(DrawingError::Io(error)))) => {
-            return finish(options, Err(OutputError::Io(error)));
+            return report::finish(&options.output, Err(OutputError::Io(error)));
         }
         Err(DotsError::Taker(DrawError::Drawing(error))) => {
             return Err(Failure::at(&options.output, error));
@@ -60,57 +60,22 @@ pub(crate) fn run(options: &StippleOptions) -> Result<(), Failure> {
         Err(DotsError::Taker(error)) => return Err(Failure::about("--exact", error)),
         Err(error) => return Err(of_photo(options, error)),
     };
-    finish(options, output.commit())?;
+    report::finish(&options.output, output.commit())?;
     if !options.quiet {
-        let seconds = time.as_secs_f64();
-        // Stderr may be closed; the points are written all the same.
-        let _ = writeln!(
-            io::stderr(),
-            "twelvefold: {points} points in {seconds:.3} s, {:.0} points a second{}",
-            points as f64 / seconds.max(1e-9),
-            remarks(options, &plan, points, &drawn),
-        );
+        report::points(points, time, &remarks(options, &plan, points, &drawn));
     }
     Ok(())
 }
 
-/// Opens the output before the photograph is read: a mistake in its name shows at once.
-fn open(options: &StippleOptions) -> Result<(Format, Output), Failure> {
-    let path = &options.output;
-    if path.as_os_str() == "-" {
-        return Ok((options.format.unwrap_or(Format::Csv), Output::standard()));
-    }
-    let format = options.format.or_else(|| Format::of(path)).ok_or_else(|| {
-        Failure::at(path, "has none of the endings .svg, .png, .pdf, .csv and .npy; see --format")
-    })?;
-    let output =
-        Output::create_from(path, &options.photo).map_err(|error| of_output(path, error))?;
-    Ok((format, output))
-}
-
-/// An option that was given and that changes nothing in files of this format.
-fn idle(options: &StippleOptions, format: Format) -> Option<&'static str> {
-    let paper = &options.paper;
-    // Dots of pens lie apart by their size, and have colors by that of the paper.
-    let by_size = paper.pen.is_some() || paper.pens.is_some();
-    [
-        ("--dpi", paper.dpi.is_some() && format != Format::Png),
-        ("--scale", options.scale.is_some() && format.is_list()),
-        ("--paper", paper.paper.is_some() && paper.pens.is_none() && format.is_list()),
-        ("--dot-size", options.dot_size.is_some() && !by_size && format.is_list()),
-    ]
-    .into_iter()
-    .find_map(|(option, idle)| idle.then_some(option))
-}
-
 /// Reads the photograph, which must not be blank if dots are to be drawn.
 fn read(options: &StippleOptions) -> Result<Picture, Failure> {
-    let picture = picture::read_layer(&options.photo, tone(options)?, options.layer.as_deref())
-        .map_err(|error| of_photo(options, error))?;
+    let picture =
+        picture::read_layer(&options.photo, options.tone.tone()?, options.layer.as_deref())
+            .map_err(|error| of_photo(options, error))?;
     warn(options, &picture.warnings);
     let nothing = options.points == Some(0) || options.exact == Some(0);
     if picture.total() == 0.0 && !nothing {
-        let blank = Blank { invert: options.invert, range: picture.range };
+        let blank = Blank { invert: options.tone.invert, range: picture.range };
         return Err(of_photo(options, blank));
     }
     Ok(picture)
@@ -120,7 +85,7 @@ fn read(options: &StippleOptions) -> Result<Picture, Failure> {
 fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), Failure> {
     let paper = options.paper.paper.unwrap_or(Color::WHITE);
     let pens = pens.on(paper).map_err(|error| Failure::about("--pens", error))?;
-    let tone = tone(options)?;
+    let tone = options.tone.tone()?;
     let mut colors = picture::read_color(&options.photo, tone, options.layer.as_deref())
         .map_err(|error| of_photo(options, error))?;
     warn(options, &colors.warnings);
@@ -152,40 +117,7 @@ fn read_color(options: &StippleOptions, pens: &Pens) -> Result<(Picture, Inks), 
 
 fn warn(options: &StippleOptions, warnings: &[String]) {
     if !options.quiet {
-        super::warn(&options.photo, warnings);
-    }
-}
-
-/// The tone that the options ask for.
-fn tone(options: &StippleOptions) -> Result<Tone, Failure> {
-    let plain = Levels::default();
-    let levels = Levels {
-        black: options.black.unwrap_or(plain.black),
-        white: options.white.unwrap_or(plain.white),
-        gamma: options.gamma.unwrap_or(plain.gamma),
-    };
-    if levels.black >= levels.white {
-        let reason = format!("{} is not below --white {}", levels.black, levels.white);
-        return Err(Failure::about("--black", reason));
-    }
-    Ok(Tone {
-        linear: options.linear,
-        invert: options.invert,
-        levels: (levels != plain).then_some(levels),
-        exposure: options.exposure,
-    })
-}
-
-/// Turns a picture's darkness into how many dots it should have.
-fn prepare(picture: &mut Picture, options: &StippleOptions, format: Format) {
-    let paper = &options.paper;
-    // A pen's dots lie apart, so that none of their ink is lost; a list of points has no ink.
-    let lies_apart = paper.pen.is_some() || format.is_list();
-    let gain = if lies_apart { DotGain::Ignore } else { DotGain::Correct };
-    if paper.line {
-        gain::square(&mut picture.importance);
-    } else if options.dot_gain.unwrap_or(gain) == DotGain::Correct {
-        gain::correct(&mut picture.importance);
+        report::warn(&options.photo, warnings);
     }
 }
 
@@ -243,15 +175,14 @@ fn draw(
             picture,
             plan.wish,
             || {},
-            |dot| put(&mut *drawing, sheet.place(dot), progress),
+            |step| match step {
+                Step::Dot(dot) => put(&mut *drawing, sheet.place(dot), progress),
+                Step::Cut => drawing.cut().map_err(|error| DrawError::Drawing(error.into())),
+            },
         )?;
     }
     drawing.finish().map_err(failed)?;
     Ok(drawn)
-}
-
-fn layer(plan: &Plan) -> Layer {
-    Layer { name: plan.ink.svg(), color: plan.ink }
 }
 
 /// Dots as pens draw them: on the sheet, all apart, those of each pen in order.
@@ -291,11 +222,6 @@ fn layers(
         *dots = arranged(std::mem::take(dots), plan);
     }
     Ok(layers)
-}
-
-fn put(drawing: &mut dyn Drawing, dot: DVec2, progress: &mut Progress) -> Result<(), DrawError> {
-    progress.point();
-    drawing.dot(dot).map_err(|error| DrawError::Drawing(error.into()))
 }
 
 /// Dots in the order in which a pen draws them.
@@ -339,73 +265,5 @@ fn remarks(options: &StippleOptions, plan: &Plan, points: u64, drawn: &Drawn) ->
 }
 
 fn of_photo(options: &StippleOptions, reason: impl Into<Box<dyn std::error::Error>>) -> Failure {
-    super::of_input(&options.photo, reason)
+    report::of_input(&options.photo, reason)
 }
-
-/// A file that could not be written is an error, unless whoever read it has had enough.
-fn finish(options: &StippleOptions, written: Result<(), OutputError>) -> Result<(), Failure> {
-    match written {
-        Err(OutputError::Io(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(|error| of_output(&options.output, error)),
-    }
-}
-
-fn of_output(path: &Path, error: OutputError) -> Failure {
-    if path.as_os_str() == "-" {
-        Failure::about("standard output", error)
-    } else {
-        Failure::at(path, error)
-    }
-}
-
-/// Why drawing stopped.
-#[derive(Debug)]
-enum DrawError {
-    Drawing(DrawingError),
-    /// Fewer dots than asked for lie a pen's width apart.
-    NotExact {
-        asked: usize,
-        found: usize,
-    },
-}
-
-impl fmt::Display for DrawError {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Drawing(error) => error.fmt(out),
-            Self::NotExact { asked, found } => {
-                write!(out, "of {asked} dots only {found} lie a pen's width apart; ask for fewer")
-            }
-        }
-    }
-}
-
-impl std::error::Error for DrawError {}
-
-/// The photograph has nothing to put dots on.
-#[derive(Debug)]
-struct Blank {
-    invert: bool,
-    /// Of a float file.
-    range: Option<(f64, f64)>,
-}
-
-impl fmt::Display for Blank {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.range {
-            Some((least, greatest)) if !self.invert && least >= 1.0 => write!(
-                out,
-                "is brighter than 1, which is white, everywhere ({least:.3} to {greatest:.3}); \
-                 try --exposure {}",
-                -greatest.log2().ceil().max(1.0)
-            ),
-            _ => out.write_str(if self.invert {
-                "is all black, which leaves no place for dots; try without --invert"
-            } else {
-                "is all white, which leaves no place for dots; try --invert"
-            }),
-        }
-    }
-}
-
-impl std::error::Error for Blank {}

@@ -5,19 +5,19 @@ use std::fmt;
 
 use glam::DVec2;
 use twelvefold::Tables;
-use twelvefold_files::picture::Picture;
 
-use crate::args::{MAX_EXACT, MAX_POINTS, StippleOptions};
+use crate::args::{MAX_EXACT, MAX_POINTS, MAX_REFINED, StippleOptions};
 use crate::format::Format;
 use crate::page::options::Marks;
 use crate::page::options::Order;
+use crate::survey::Darkness;
 use twelvefold_stipple::budget::{default_count, default_dot_size};
-use twelvefold_stipple::dots::{self, Count, STREAMED, Wish};
-use twelvefold_stipple::drawing::Look;
+use twelvefold_stipple::drawing::{Look, Piece};
 use twelvefold_stipple::page::color::Color;
 use twelvefold_stipple::page::length::Length;
 use twelvefold_stipple::page::mark::Mark;
 use twelvefold_stipple::page::sheet::{DotWidth, NoRoom, Page, Sheet};
+use twelvefold_stipple::wish::{self, Count, STREAMED, Wish};
 
 /// The share of a black area that a pen draws over. Discs that do not overlap cover at most 0.907 of an area;
 /// at 0.8 even ones lie 1.065 of their width apart.
@@ -76,6 +76,8 @@ pub(crate) enum PlanError {
         asked: f64,
         capacity: f64,
     },
+    /// More dots than can be refined.
+    TooManyToRefine,
     /// More dots than can be put into this order.
     TooManyToOrder {
         most: f64,
@@ -90,7 +92,9 @@ impl PlanError {
             Self::BestUnrefined => "--best",
             Self::UnitWithoutPage | Self::DotSizeOfPen | Self::DotBelowPen { .. } => "--dot-size",
             Self::RingWithoutPen => "--marks ring",
-            Self::TooMany { .. } | Self::TooManyToOrder { .. } => "--points",
+            Self::TooMany { .. } | Self::TooManyToRefine | Self::TooManyToOrder { .. } => {
+                "--points"
+            }
         }
     }
 }
@@ -116,6 +120,9 @@ impl fmt::Display for PlanError {
                 out,
                 "{asked} dots do not fit on the page a pen's width apart; it can hold {capacity}"
             ),
+            Self::TooManyToRefine => {
+                write!(out, "at most {MAX_REFINED} dots can be refined; see --refine 0")
+            }
             Self::TooManyToOrder { most } => write!(out, "at most {most} dots can be put in order"),
         }
     }
@@ -124,24 +131,23 @@ impl fmt::Display for PlanError {
 impl std::error::Error for PlanError {}
 
 impl Plan {
-    /// The plan for a picture, whose importance is as dots should have it (see [`gain`](super::gain)), written
-    /// as `format`.
+    /// The plan for a picture of so much importance, as dots should have it, written as `format`.
     ///
     /// # Errors
     /// [`PlanError`].
     pub(crate) fn new(
         options: &StippleOptions,
-        picture: &Picture,
+        darkness: &Darkness,
         format: Format,
     ) -> Result<Self, PlanError> {
         if options.best && options.refine == Some(0) {
             return Err(PlanError::BestUnrefined);
         }
         let paper = &options.paper;
-        let black = picture.total();
+        let black = darkness.total;
         let asked = options.exact.or(options.points).map(|count| count as f64);
         let pen = paper.pen.map(Length::millimeters);
-        let photograph = DVec2::new(picture.width as f64, picture.height as f64);
+        let photograph = DVec2::new(darkness.width as f64, darkness.height as f64);
         let width = dot_width(options, asked, black, pen)?;
         let sheet = match paper.page {
             None => Sheet::of_pixels(photograph, options.scale.unwrap_or(1.0)),
@@ -165,9 +171,8 @@ impl Plan {
             // The densest that a pen may draw, and what that makes where the picture is black.
             Some(_) => {
                 let densest = pixel * pixel * densest(width, paper.line);
-                let darkest =
-                    picture.importance.iter().fold(0.0f32, |most, &pixel| most.max(pixel));
-                let capacity = (densest * black / f64::from(darkest)).floor().max(1.0);
+                let darkest = f64::from(darkness.darkest);
+                let capacity = (densest * black / darkest).floor().max(1.0);
                 if let Some(asked) = asked.filter(|asked| *asked > capacity) {
                     return Err(PlanError::TooMany { asked, capacity });
                 }
@@ -190,11 +195,14 @@ impl Plan {
             seed: options.seed,
             refine: options
                 .refine
-                .map_or(dots::default_iterations(count, options.best), usize::from),
+                .map_or(wish::default_iterations(count, options.best), usize::from),
             best: options.best,
             ranked: order == Order::Rank,
             tables: Tables::built_in(),
         };
+        if wish.refine > 0 && count > MAX_REFINED as f64 {
+            return Err(PlanError::TooManyToRefine);
+        }
         Ok(Self {
             look: look(options, format, sheet, mark, pixel / (count / black).sqrt(), &wish),
             wish,
@@ -207,7 +215,7 @@ impl Plan {
                 None if paper.pens.is_some() && options.dot_size.is_none() => Some(width),
                 None => None,
             },
-            ink: if options.invert { Color::WHITE } else { Color::BLACK },
+            ink: if options.tone.invert { Color::WHITE } else { Color::BLACK },
         })
     }
 
@@ -296,18 +304,19 @@ fn look(
     spacing: f64,
     wish: &Wish,
 ) -> Look {
-    let ground = if options.invert { Color::BLACK } else { Color::WHITE };
+    let ground = if options.tone.invert { Color::BLACK } else { Color::WHITE };
     // What a pen draws gets nothing around it that a pen would draw too.
     let on_screen = !sheet.is_page() && matches!(mark, Mark::Disc(_) | Mark::Line(_));
     let photo = &options.photo;
     Look {
+        piece: Piece::WHOLE,
         sheet,
         mark,
         spacing,
         ground: options.paper.paper.unwrap_or(ground),
         ground_drawn: options.paper.paper.is_some() || on_screen || format == Format::Png,
         // Pens' amounts are those of light.
-        linear: options.linear || options.paper.pens.is_some(),
+        linear: options.tone.linear || options.paper.pens.is_some(),
         named: options.paper.pens.is_some(),
         title: photo.file_name().unwrap_or(photo.as_os_str()).to_string_lossy().into_owned(),
         description: wish.description(),

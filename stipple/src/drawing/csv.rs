@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, Write};
 
 use glam::DVec2;
 
-use super::{Drawing, Layer};
+use super::{Drawing, Layer, Look};
 
 /// Lines `x,y`, or `x,y,pen`, after a header that says so. A pen's name is that of its layer. Coordinates are the shortest decimals that read back as
 /// the same 32-bit floats.
@@ -22,9 +22,12 @@ impl<W: Write> Csv<W> {
     ///
     /// # Errors
     /// The system's.
-    pub fn new(out: W, named: bool) -> io::Result<Self> {
+    pub fn new(out: W, look: &Look) -> io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
-        out.write_all(if named { b"x,y,pen\n" } else { b"x,y\n" })?;
+        let named = look.named;
+        if look.piece.first {
+            out.write_all(if named { b"x,y,pen\n" } else { b"x,y\n" })?;
+        }
         Ok(Self {
             out,
             end: "\n".to_owned(),
@@ -73,8 +76,8 @@ mod tests {
     #[test]
     fn coordinates_read_back_to_the_bit() {
         let dots = [(0.0f32, 511.99997f32), (1e-6, 0.1), (16_777_215.0, 33.333_332)];
-        let mut bytes = Vec::new();
-        let mut csv = Box::new(Csv::new(&mut bytes, false).unwrap());
+        let (mut bytes, look) = (Vec::new(), Look::of_pixels(9, 9, 1.0, 1.0));
+        let mut csv = Box::new(Csv::new(&mut bytes, &look).unwrap());
         for (x, y) in dots {
             csv.dot(DVec2::new(f64::from(x), f64::from(y))).unwrap();
         }
@@ -93,7 +96,8 @@ mod tests {
     #[test]
     fn pens_have_a_column() {
         let mut bytes = Vec::new();
-        let mut csv = Box::new(Csv::new(&mut bytes, true).unwrap());
+        let look = Look { named: true, ..Look::of_pixels(9, 9, 1.0, 1.0) };
+        let mut csv = Box::new(Csv::new(&mut bytes, &look).unwrap());
         for name in ["teal", "a,\"b\""] {
             csv.layer(&Layer { name: name.to_owned(), ..Layer::black() }).unwrap();
             csv.dot(DVec2::new(1.5, 2.0)).unwrap();

@@ -5,7 +5,7 @@ mod canvas;
 mod coverage;
 mod csv;
 mod decimal;
-mod npy;
+pub mod npy;
 mod pdf;
 mod png;
 mod svg;
@@ -39,6 +39,14 @@ pub trait Drawing {
     /// The system's, as for [`layer`](Self::layer).
     fn dot(&mut self, at: DVec2) -> io::Result<()>;
 
+    /// Says that what was drawn so far does not depend on what follows, nor that on it: a file may be cut here.
+    ///
+    /// # Errors
+    /// The system's, as for [`layer`](Self::layer).
+    fn cut(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Writes what is left and ends the file.
     ///
     /// # Errors
@@ -53,9 +61,24 @@ pub struct Layer {
     pub color: Color,
 }
 
+/// Which part of a file is written, where it may be cut: parts in order, one after the other, are the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece {
+    /// What goes before the first dot belongs to it.
+    pub first: bool,
+    /// What goes after the last dot belongs to it.
+    pub last: bool,
+}
+
+impl Piece {
+    pub const WHOLE: Self = Self { first: true, last: true };
+}
+
 /// What the drawing looks like.
 #[derive(Debug, Clone)]
 pub struct Look {
+    /// Of CSV and SVG; others are not cut.
+    pub piece: Piece,
     pub sheet: Sheet,
     pub mark: Mark,
     /// The distance of neighbors where dots are densest, in the sheet's unit.
@@ -123,6 +146,7 @@ impl Look {
     /// A look for tests: a photograph of this size, discs of this width on white.
     fn of_pixels(width: usize, height: usize, scale: f64, dot: f64) -> Self {
         Self {
+            piece: Piece::WHOLE,
             sheet: Sheet::of_pixels(DVec2::new(width as f64, height as f64), scale),
             mark: Mark::Disc(dot),
             spacing: 3.0,

@@ -45,9 +45,9 @@ impl<W: Write> Drawing for Npy<W> {
     }
 }
 
-/// The magic number, the version, the length of the rest, and the rest: padded so that the array begins at a
-/// multiple of 64 bytes.
-fn header(dots: usize, columns: usize) -> Vec<u8> {
+/// What goes before the numbers of an array of this shape. The magic number, the version, the length of the rest, and
+/// the rest: padded so that the array begins at a multiple of 64 bytes.
+pub fn header(dots: usize, columns: usize) -> Vec<u8> {
     let mut header = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
     let text =
         format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({dots}, {columns}), }}");

@@ -42,23 +42,8 @@ impl<'a, W: Write> Svg<'a, W> {
     /// The system's.
     pub fn new(out: W, look: &'a Look) -> io::Result<Self> {
         let mut out = BufWriter::with_capacity(1 << 16, out);
-        let DVec2 { x: width, y: height } = look.sheet.size;
-        let (shown_width, shown_height) = match look.sheet.unit {
-            Unit::Pixel(scale) => ((width * scale).to_string(), (height * scale).to_string()),
-            Unit::Millimeter(_) => (format!("{width}mm"), format!("{height}mm")),
-        };
-        write!(
-            out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" \
-             xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
-             width=\"{shown_width}\" height=\"{shown_height}\" viewBox=\"0 0 {width} {height}\">\n\
-             <title>{}</title>\n<desc>{}</desc>\n",
-            escaped(&look.title),
-            escaped(&look.description),
-        )?;
-        if look.ground_drawn {
-            let ground = look.ground.svg();
-            writeln!(out, "<rect width=\"{width}\" height=\"{height}\" fill=\"{ground}\"/>")?;
+        if look.piece.first {
+            write_head(&mut out, look)?;
         }
         let decimals = look.decimals();
         let steps = 10f64.powi(decimals as i32);
@@ -84,6 +69,29 @@ impl<'a, W: Write> Svg<'a, W> {
         self.pen = [0; 2];
         Ok(())
     }
+}
+
+/// What goes before the first layer.
+fn write_head(out: &mut impl Write, look: &Look) -> io::Result<()> {
+    let DVec2 { x: width, y: height } = look.sheet.size;
+    let (shown_width, shown_height) = match look.sheet.unit {
+        Unit::Pixel(scale) => ((width * scale).to_string(), (height * scale).to_string()),
+        Unit::Millimeter(_) => (format!("{width}mm"), format!("{height}mm")),
+    };
+    write!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" \
+         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" \
+         width=\"{shown_width}\" height=\"{shown_height}\" viewBox=\"0 0 {width} {height}\">\n\
+         <title>{}</title>\n<desc>{}</desc>\n",
+        escaped(&look.title),
+        escaped(&look.description),
+    )?;
+    if look.ground_drawn {
+        let ground = look.ground.svg();
+        writeln!(out, "<rect width=\"{width}\" height=\"{height}\" fill=\"{ground}\"/>")?;
+    }
+    Ok(())
 }
 
 /// The width of a stroke as long as a tap that has the area of a disc: (π/4)·w² + TAP·w = (π/4)·width².
@@ -163,6 +171,9 @@ impl<W: Write> Drawing for Svg<'_, W> {
             self.out.write_all(b"</g>\n")?;
         }
         self.layers += 1;
+        if !self.look.piece.first && self.layers == 1 {
+            return Ok(());
+        }
         let stroke = match self.look.mark {
             // On a page, a stroke is as wide as the pen.
             Mark::Disc(width) if !self.look.sheet.is_page() => disc_stroke(width),
@@ -209,12 +220,18 @@ impl<W: Write> Drawing for Svg<'_, W> {
         Ok(())
     }
 
+    fn cut(&mut self) -> io::Result<()> {
+        self.end_path()
+    }
+
     fn finish(mut self: Box<Self>) -> io::Result<()> {
         self.end_path()?;
-        if self.layers > 0 {
-            self.out.write_all(b"</g>\n")?;
+        if self.look.piece.last {
+            if self.layers > 0 {
+                self.out.write_all(b"</g>\n")?;
+            }
+            self.out.write_all(b"</svg>\n")?;
         }
-        self.out.write_all(b"</svg>\n")?;
         self.out.flush()
     }
 }
@@ -251,6 +268,7 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawing::Piece;
     use crate::page::color::Color;
     use crate::page::sheet::{DotWidth, Page, Sheet};
 
@@ -330,5 +348,31 @@ mod tests {
         let look = Look::of_pixels(40, 30, 1.0, 1.0);
         let dots = vec![(1.0, 2.0); DOTS_IN_PATH as usize + 1];
         assert_eq!(drawn(&look, &dots).matches("<path d=\"M1 2h.01").count(), 2);
+    }
+
+    #[test]
+    fn pieces_one_after_the_other_are_the_file() {
+        let dots =
+            |from: usize, to: usize| (from..to).map(|i| DVec2::new(i as f64, 30.0 - i as f64));
+        let drawn = |piece: Piece, parts: &[(usize, usize)]| {
+            let look = Look { piece, ..Look::of_pixels(40, 30, 1.0, 3.0) };
+            let mut bytes = Vec::new();
+            let mut svg = Box::new(Svg::new(&mut bytes, &look).unwrap());
+            svg.layer(&Layer::black()).unwrap();
+            for (from, to) in parts {
+                dots(*from, *to).for_each(|dot| svg.dot(dot).unwrap());
+                svg.cut().unwrap();
+            }
+            svg.finish().unwrap();
+            bytes
+        };
+        let whole = drawn(Piece::WHOLE, &[(0, 7), (7, 7), (7, 19), (19, 25)]);
+        let pieces = [
+            drawn(Piece { first: true, last: false }, &[(0, 7)]),
+            drawn(Piece { first: false, last: false }, &[(7, 7)]),
+            drawn(Piece { first: false, last: false }, &[]),
+            drawn(Piece { first: false, last: true }, &[(7, 19), (19, 25)]),
+        ];
+        assert_eq!(String::from_utf8(whole), String::from_utf8(pieces.concat()));
     }
 }
