@@ -52,7 +52,7 @@ impl<R: Read> Reader<R> {
     ///
     /// # Errors
     /// [`Y4mError`].
-    pub fn next(&mut self) -> Result<Option<Picture>, Y4mError> {
+    pub fn frame(&mut self) -> Result<Option<Picture>, Y4mError> {
         if self.source.fill_buf()?.is_empty() {
             return Ok(None);
         }
@@ -98,7 +98,7 @@ mod tests {
     fn read(bytes: &[u8]) -> Result<Vec<Picture>, Y4mError> {
         let mut reader = Reader::new(bytes, Tone::default())?;
         let mut frames = Vec::new();
-        while let Some(frame) = reader.next()? {
+        while let Some(frame) = reader.frame()? {
             frames.push(frame);
         }
         Ok(frames)
