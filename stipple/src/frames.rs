@@ -37,35 +37,38 @@ impl Frames {
         Ok(Self { mosaic, wish })
     }
 
-    /// Hands the dots of a frame, in pixels, to `take`. Keeps no list if they are not refined.
+    /// Hands the dots of a frame, in pixels, to `take`, and cuts between the [cells](Mosaic) of a large one. Keeps no
+    /// list if they are not refined.
     ///
     /// # Errors
     /// [`DotsError`], and what `take` fails with.
     pub fn place<E>(
         &self,
         frame: &Picture,
-        mut take: impl FnMut(DVec2) -> Result<(), E>,
+        mut take: impl FnMut(Step) -> Result<(), E>,
     ) -> Result<(), DotsError<E>> {
         if self.wish.refine == 0 {
             return self.raw(frame, take);
         }
         let mut dots = Vec::new();
-        self.raw(frame, |dot| {
+        self.raw(frame, |step| {
+            let Step::Dot(dot) = step else { return Ok(()) };
             dots.try_reserve(1).map_err(|_| dots.len() + 1)?;
             dots.push(dot);
             Ok(())
         })
         .map_err(|error| error.map_taker(DotsError::Memory))?;
         refined(frame, &mut dots, self.wish, || {}).map_err(DotsError::Refine)?;
-        dots.into_iter().try_for_each(|dot| take(dot).map_err(DotsError::Taker))
+        dots.into_iter().try_for_each(|dot| take(Step::Dot(dot)).map_err(DotsError::Taker))
     }
 
     /// The dots as the sampling gives them.
     fn raw<E>(
         &self,
         frame: &Picture,
-        mut take: impl FnMut(DVec2) -> Result<(), E>,
+        mut take: impl FnMut(Step) -> Result<(), E>,
     ) -> Result<(), DotsError<E>> {
+        let several = self.mosaic.cells().len() > 1;
         let read = |columns: Range<usize>, rows: Range<usize>| {
             let mut window = Vec::new();
             let len = columns.len() * rows.len();
@@ -76,8 +79,9 @@ impl Frames {
             Ok(window)
         };
         raw::cells(self.mosaic.cells(), self.wish, read, |step, _| match step {
-            Step::Dot(dot) => take(dot),
-            Step::Cut => Ok(()),
+            // As a single picture is drawn.
+            Step::Cut if !several => Ok(()),
+            step => take(step),
         })
     }
 }
@@ -112,8 +116,11 @@ mod tests {
 
     fn placed(frames: &Frames, frame: &Picture) -> Vec<[u64; 2]> {
         let mut dots = Vec::new();
-        let taken = frames.place(frame, |dot| {
-            dots.push(dot.to_array().map(f64::to_bits));
+        let taken = frames.place(frame, |step| {
+            dots.push(match step {
+                Step::Dot(dot) => dot.to_array().map(f64::to_bits),
+                Step::Cut => [u64::MAX; 2],
+            });
             Ok::<(), Infallible>(())
         });
         taken.unwrap();
@@ -121,7 +128,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
+        #![proptest_config(ProptestConfig::with_cases(6))]
 
         /// Whatever happens on one side of a picture, the other side's dots are the same to the bit.
         #[test]
@@ -146,6 +153,29 @@ mod tests {
             prop_assert!(far[0].len() > 1000, "{}", far[0].len());
             prop_assert_eq!(&far[0], &far[1]);
         }
+    }
+
+    #[test]
+    fn a_large_frame_is_cut_as_a_large_picture_is() {
+        // More than one cell's dots.
+        let large = || picture(300, |x, y| ((x / 50 + y / 70) % 4) as f32 / 3.0);
+        let frames = Frames::new(&large(), wish(1.1e6, 3)).unwrap();
+        let found = placed(&frames, &large());
+        let mut expected = Vec::new();
+        let taken = dots::place(
+            large(),
+            wish(50_000.0, 3),
+            || {},
+            |step| {
+                expected.push(match step {
+                    Step::Dot(dot) => dot.to_array().map(f64::to_bits),
+                    Step::Cut => [u64::MAX; 2],
+                });
+                Ok::<(), Infallible>(())
+            },
+        );
+        taken.unwrap();
+        assert!(found == expected && found.contains(&[u64::MAX; 2]));
     }
 
     #[test]

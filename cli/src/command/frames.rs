@@ -10,6 +10,7 @@ use crate::frames::input::{Input, is_stream};
 use crate::frames::options::FramesOptions;
 use crate::frames::output::{Kind, Target};
 use crate::frames::plan::{Plan, importance};
+use crate::report;
 use crate::stipple::tones::Blank;
 
 /// Runs the subcommand.
@@ -23,7 +24,7 @@ pub(crate) fn run(options: &FramesOptions) -> Result<(), Failure> {
     target.check(number, input.next_file().as_deref())?;
     let Some(first) = input.first()? else {
         let blank = Blank { invert: options.tone.invert, range: None };
-        return Err(Failure::at(&options.input, blank));
+        return Err(report::of_input(&options.input, blank));
     };
     let plan = Plan::new(options, first, kind)?;
 

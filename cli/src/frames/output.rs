@@ -10,6 +10,7 @@ use twelvefold_files::progress::Progress;
 use twelvefold_files::y4m::Rate;
 use twelvefold_stipple::drawing::{Drawing, DrawingError, Y4m};
 use twelvefold_stipple::error::DotsError;
+use twelvefold_stipple::raw::Step;
 
 use super::input::{Frame, is_stream};
 use super::options::FramesOptions;
@@ -173,7 +174,10 @@ fn fill(
 ) -> Result<(), DotsError<DrawError>> {
     let failed = |error: io::Error| of_drawing(error.into());
     drawing.layer(&plan.layer).map_err(failed)?;
-    plan.frames.place(&frame.picture, |dot| put(&mut *drawing, dot, progress))?;
+    plan.frames.place(&frame.picture, |step| match step {
+        Step::Dot(dot) => put(&mut *drawing, plan.place(dot), progress),
+        Step::Cut => drawing.cut().map_err(|error| DrawError::Drawing(error.into())),
+    })?;
     drawing.finish().map_err(failed)
 }
 

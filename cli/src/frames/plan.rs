@@ -87,6 +87,11 @@ impl Plan {
         Ok(Self { frames, look, layer, dots: count, density, refine })
     }
 
+    /// Where a dot of a frame lies in the drawing.
+    pub(crate) fn place(&self, dot: DVec2) -> DVec2 {
+        self.look.sheet.place(dot)
+    }
+
     /// The look of a frame that was read from a file, if it was.
     pub(crate) fn look(&self, file: Option<&Path>, number: u64) -> Look {
         let title = match file.and_then(Path::file_name) {
