@@ -6,7 +6,6 @@
 
 use std::ops::Range;
 
-use glam::DVec2;
 use twelvefold::{MapError, Mosaic, Pixels};
 use twelvefold_files::picture::Picture;
 
@@ -164,7 +163,7 @@ mod tests {
         let mut expected = Vec::new();
         let taken = dots::place(
             large(),
-            wish(50_000.0, 3),
+            wish(1.1e6, 3),
             || {},
             |step| {
                 expected.push(match step {
