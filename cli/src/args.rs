@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
-    Stipple(StippleOptions),
+    Stipple(Box<StippleOptions>),
     /// Draw moving pictures with equal dots, which stay where nothing moves.
     ///
     /// How many dots a darkness gets is fixed by the first frame that is not blank. Where a frame is as the one before,

@@ -21,9 +21,9 @@ use crate::position::Scalar;
 const LARGEST_SPACING: f64 = 1.5;
 
 /// No point is moved by more than so many spacings of the mean importance, so that a part of the image knows
-/// all points that may come into it. What is moved by half its local spacing has an importance below a thousandth
-/// of the mean.
-const FARTHEST: f64 = 16.0;
+/// all points that may come into it. What would be moved farther by half its local spacing has an importance below
+/// 1/256 of the mean.
+const FARTHEST: f64 = 8.0;
 
 /// The plane of details holds 0 … 255.
 const FULL_DETAIL: f64 = 1.0 / 255.0;

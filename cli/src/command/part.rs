@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use twelvefold::Mosaic;
+use twelvefold::{Cell, Mosaic};
 use twelvefold_files::failure::Failure;
 use twelvefold_files::output::{Output, OutputError};
 use twelvefold_files::picture::Scan;
@@ -19,7 +19,13 @@ use crate::report;
 use crate::stipple::drawn::{DrawError, layer, open, put};
 use crate::stipple::plan::Plan;
 use crate::stipple::tones::{Blank, Importance, importance};
-use crate::survey::{Darkness, Survey};
+use crate::survey::Survey;
+
+/// What a cell's map takes while it is made, a pixel.
+const MAP_BYTES: usize = 30;
+
+/// So that it takes 2 GiB at most.
+const MOST_PIXELS: usize = (2 << 30) / MAP_BYTES;
 
 /// Draws one part.
 pub(crate) fn run(options: &StippleOptions, part: Part) -> Result<(), Failure> {
@@ -53,7 +59,19 @@ pub(crate) fn run(options: &StippleOptions, part: Part) -> Result<(), Failure> {
     plan.look.piece = Piece { first: part.is_first(), last: part.is_last() };
     plan.wish.refine = 0;
 
-    let expected = plan.wish.count.number() / part.of as f64;
+    let count = plan.wish.count.number();
+    let mosaic = Mosaic::new((darkness.width, darkness.height), darkness.mean, count)
+        .map_err(|error| report::of_input(photo, error))?;
+    let pixels = |cell: Cell| cell.columns().len().saturating_mul(cell.rows().len());
+    let most = mosaic.part(part.index, part.of).map(pixels).max().unwrap_or(0);
+    if most > MOST_PIXELS {
+        let mebibytes = most.saturating_mul(MAP_BYTES) >> 20;
+        let reason = format!(
+            "takes {mebibytes} MiB for so few dots of so large a photograph; make it smaller"
+        );
+        return Err(Failure::about("--part", reason));
+    }
+    let expected = count / part.of as f64;
     let mut progress = Progress::new(expected, options.quiet);
     let drawn =
         draw(format, (&mut scan, importance), (&plan, &darkness, part), &mut output, &mut progress);
@@ -94,16 +112,13 @@ fn refuse(options: &StippleOptions, format: Format) -> Result<(), Failure> {
 fn draw(
     format: Format,
     (scan, importance): (&mut Scan, Importance),
-    (plan, darkness, part): (&Plan, &Darkness, Part),
+    (plan, cells): (&Plan, impl Iterator<Item = Cell>),
     output: &mut Output,
     progress: &mut Progress,
 ) -> Result<(), DotsError<DrawError>> {
     let failed = |error: DrawingError| DotsError::Taker(DrawError::Drawing(error));
     let mut drawing = format.begin(output, &plan.look).map_err(failed)?;
     drawing.layer(&layer(plan)).map_err(|error| failed(error.into()))?;
-    let size = (darkness.width, darkness.height);
-    let mosaic =
-        Mosaic::new(size, darkness.mean, plan.wish.count.number()).map_err(DotsError::Map)?;
     let read = |columns: Range<usize>, rows: Range<usize>| {
         let mut pixels = scan
             .window(columns, rows)
@@ -111,7 +126,7 @@ fn draw(
         importance.of_darkness(&mut pixels);
         Ok(pixels)
     };
-    raw::cells(mosaic.part(part.index, part.of), plan.wish, read, |step, _| match step {
+    raw::cells(cells, plan.wish, read, |step, _| match step {
         Step::Dot(dot) => put(&mut *drawing, plan.look.sheet.place(dot), progress),
         Step::Cut => drawing.cut().map_err(|error| DrawError::Drawing(error.into())),
     })?;

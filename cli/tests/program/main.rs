@@ -7,6 +7,7 @@ mod inputs;
 mod measure;
 mod outputs;
 mod paper;
+mod parts;
 mod pens;
 mod said;
 mod tiling;
@@ -143,7 +144,7 @@ fn the_tables_are_those_of_the_library() {
 fn a_wrong_command_line_is_explained_and_fails_with_2() {
     for arguments in [
         &["stipple"][..],
-        &["stipple", "a.png", "-o", "b.svg", "--points", "50000001"],
+        &["stipple", "a.png", "-o", "b.svg", "--points", "4000000001"],
         &["stipple", "a.png", "-o", "b.svg", "--points", "-3"],
         &["stipple", "a.png", "-o", "b.svg", "--scale", "0"],
         &["stipple", "a.png", "-o", "b.svg", "--dot-size", "NaN"],

@@ -33,8 +33,12 @@ use self::spread::Spread;
 use self::sums::{Cut, Sums};
 use super::pixels::{MapError, filled, with_room};
 
-/// The side of a page, in reaches of a box: its sums, which reach beyond it, then have at most 1.6 times its pixels.
-const PAGE_REACHES: usize = 8;
+/// The side of a page is at least so many reaches of a box: its sums, which reach beyond it, then have at most 2.25
+/// times its pixels.
+const PAGE_REACHES: usize = 4;
+
+/// Twice as many up to this side: then they have at most 1.6 times its pixels, and fit in a processor's cache.
+const SMALL_PAGE: usize = 64;
 
 /// Sides of pages are multiples of so many pixels.
 const LEAST_PAGE: usize = 16;
@@ -184,7 +188,8 @@ impl Layout {
     /// For maps that hold over this part of the image at least.
     pub(super) fn new(part: &Area, whole: (usize, usize), scales: &Scales) -> Self {
         let reach = libm::ceil(scales.largest.min(whole.0.max(whole.1) as f64)) as usize + 1;
-        let pages = Pages::new((PAGE_REACHES * reach).next_multiple_of(LEAST_PAGE), whole);
+        let side = (2 * PAGE_REACHES * reach).min(SMALL_PAGE).max(PAGE_REACHES * reach);
+        let pages = Pages::new(side.next_multiple_of(LEAST_PAGE), whole);
         let core = pages.around(part);
         let shared = core.grown(reach, whole);
         let toned = pages.around(&shared).grown(reach, whole);
