@@ -15,7 +15,8 @@ pub(crate) struct FramesOptions {
     /// The frames: numbered photographs, such as in/%04d.png, of which the number has at least four digits; a file
     /// ending in .y4m; or `-` for such a stream on standard input, as `ffmpeg -i VIDEO -f yuv4mpegpipe -` makes it.
     ///
-    /// Of a stream the luma is drawn, of 8 to 16 bits. A % that is part of a name is written %%.
+    /// Of a stream the luma is drawn, of 8 to 16 bits; that of streams with color is taken as 16 to 235, of 8 bits, unless
+    /// they say XCOLORRANGE=FULL. A % that is part of a name is written %%.
     #[arg(value_name = "FRAMES")]
     pub(crate) input: PathBuf,
 
@@ -45,8 +46,8 @@ pub(crate) struct FramesOptions {
 
     /// How often the dots are moved to draw each frame better, at most 1000.
     ///
-    /// Without, dots stay to the bit where nothing changes within some 40 spacings. Refined dots are evener, but each
-    /// is moved by all others, so that many of them tremble.
+    /// Without, dots stay to the bit where nothing changes within some 40 spacings, and nearly all do nearer by. Refined
+    /// dots are evener, but each is moved by all others, so that many tremble: see docs/frames.md.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1000))]
     pub(crate) refine: u16,
 

@@ -126,7 +126,7 @@ impl Header {
         }
         let (mut width, mut height) = (None, None);
         // Unknown things are as nearly all streams have them.
-        let (mut rate, mut aspect, mut full) = (Rate::default(), 1.0, false);
+        let (mut rate, mut aspect, mut full) = (Rate::default(), 1.0, None);
         let mut samples = Samples { bits: 8, chroma: Some((2, 2)), alpha: false };
         for word in words.filter(|word| !word.is_empty()) {
             let malformed = || Y4mError::Malformed(word.to_owned());
@@ -157,11 +157,17 @@ impl Header {
                     samples =
                         Samples::of(value).ok_or_else(|| Y4mError::Samples(value.to_owned()))?;
                 }
-                Some('X') => full = full || value == "COLORRANGE=FULL",
+                Some('X') => match value {
+                    "COLORRANGE=FULL" => full = Some(true),
+                    "COLORRANGE=LIMITED" => full = Some(false),
+                    _ => {}
+                },
                 _ => return Err(malformed()),
             }
         }
         let (Some(width), Some(height)) = (width, height) else { return Err(Y4mError::NoSize) };
+        // Without color, ffmpeg's are of the full range, and older ones do not say so.
+        let full = full.unwrap_or(samples.chroma.is_none());
         Ok(Self { size: (width, height), rate, aspect, samples, full })
     }
 }
@@ -186,6 +192,9 @@ mod tests {
         assert!((found.aspect - 128.0 / 117.0).abs() < 1e-12 && found.full);
         assert_eq!((found.samples.bits, found.samples.bytes()), (10, 2));
         assert_eq!(of("YUV4MPEG2 W5 H3 F0:0 I? A0:0").unwrap().rate, Rate::default());
+        let full = |words: &str| of(&format!("YUV4MPEG2 W5 H3 {words}")).unwrap().full;
+        assert!(full("Cmono") && full("XCOLORRANGE=FULL Cmono10 Xother") && !full("C444"));
+        assert!(!full("Cmono XCOLORRANGE=LIMITED") && full("XCOLORRANGE=FULL C420"));
     }
 
     #[test]

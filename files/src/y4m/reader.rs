@@ -126,7 +126,9 @@ mod tests {
         let half = 1.0 - 109.0 / 219.0;
         let expected = [1.0, 1.0, half, 0.0, 0.0, 1.0];
         let samples = [16, 0, 125, 235, 255, 3];
-        for (kind, behind) in [("mono", 0), ("420jpeg", 4), ("422", 8), ("444", 12), ("411", 4)] {
+        for (kind, behind) in
+            [("mono XCOLORRANGE=LIMITED", 0), ("420jpeg", 4), ("422", 8), ("444", 12), ("411", 4)]
+        {
             let bytes = stream(&format!("C{kind}"), &[samples, samples], false, behind);
             let frames = read(&bytes).unwrap();
             assert_eq!(frames.len(), 2, "{kind}");
@@ -145,7 +147,7 @@ mod tests {
 
     #[test]
     fn pixels_of_another_shape_become_square() {
-        let frames = read(&stream("Cmono A2:1", &[[16; 6]], false, 0)).unwrap();
+        let frames = read(&stream("Cmono A2:1", &[[0; 6]], false, 0)).unwrap();
         assert_eq!((frames[0].width, frames[0].height), (6, 2));
         assert_eq!(frames[0].importance, [1.0; 12]);
     }
