@@ -73,8 +73,13 @@ pub(crate) fn run(options: &StippleOptions, part: Part) -> Result<(), Failure> {
     }
     let expected = count / part.of as f64;
     let mut progress = Progress::new(expected, options.quiet);
-    let drawn =
-        draw(format, (&mut scan, importance), (&plan, &darkness, part), &mut output, &mut progress);
+    let drawn = draw(
+        format,
+        (&mut scan, importance),
+        (&plan, mosaic.part(part.index, part.of)),
+        &mut output,
+        &mut progress,
+    );
     let (points, time) = progress.finish();
     match drawn {
         Ok(()) => {}
