@@ -2,7 +2,9 @@
 //!
 //! Dots of single pictures follow two numbers of the whole, the mean darkness and the number of dots: they set how
 //! many dots a darkness gets, and how far around itself a dot looks. For frames both are those of one frame, so that
-//! a dot depends on nothing but the pixels within some 40 mean spacings of it.
+//! a dot depends on nothing but the pixels within some 30 mean spacings, or 100 pixels, of it (see [`Cell::rows`]).
+//!
+//! [`Cell::rows`]: twelvefold::Cell::rows
 
 use std::ops::Range;
 
@@ -140,8 +142,7 @@ mod tests {
             let (first, second) = (of(before), of(after));
             let frames = Frames::new(&first, wish(count, seed)).unwrap();
             let [found, expected] = [second, first].map(|frame| placed(&frames, &frame));
-            // 2 · 16 mean spacings, and twice one and a half more, and some pixels.
-            let margin = 35.0 * (size as f64) / count.sqrt() + 4.0;
+            let margin = (30.0 * (size as f64) / count.sqrt()).max(100.0);
             let far = |dots: &[[u64; 2]]| {
                 let mut far: Vec<_> =
                     dots.iter().filter(|dot| f64::from_bits(dot[0]) > 40.0 + margin).copied().collect();

@@ -46,7 +46,7 @@ pub(crate) struct FramesOptions {
 
     /// How often the dots are moved to draw each frame better, at most 1000.
     ///
-    /// Without, dots stay to the bit where nothing changes within some 40 spacings, and nearly all do nearer by. Refined
+    /// Without, dots stay to the bit where nothing changes within some 30 spacings, and nearly all do nearer by. Refined
     /// dots are evener, but each is moved by all others, so that many tremble: see docs/frames.md.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1000))]
     pub(crate) refine: u16,
