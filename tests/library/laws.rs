@@ -291,9 +291,12 @@ proptest! {
     }
 }
 
-/// Pictures of 200 × 200 pixels with nothing but hard edges, by importance at x, y from -100 to 100, and how many
+/// Importance at x, y.
+type Picture = fn(f64, f64) -> f64;
+
+/// Pictures of 200 × 200 pixels with nothing but hard edges, x, y from -100 to 100, and how many
 /// in 10,000 relaxed points may have another within half the spacing there.
-const EDGED: [(&str, f64, fn(f64, f64) -> f64); 4] = [
+const EDGED: [(&str, f64, Picture); 4] = [
     ("disc", 1.0, |x, y| f64::from(u8::from(x * x + y * y < 8100.0))),
     ("disc in a square", 20.0, |x, y| {
         match (x * x + y * y < 2500.0, x.abs().max(y.abs()) < 80.0) {
