@@ -11,6 +11,7 @@ use twelvefold::tiling::TileType;
 use twelvefold_lab::measure::Window;
 
 use crate::format::Format;
+use crate::frames::options::FramesOptions;
 use crate::page::options::PaperOptions;
 use crate::part::Part;
 use crate::tone::{ToneOptions, positive};
@@ -39,6 +40,11 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Draw a photograph with equal dots, dense where it is dark.
     Stipple(Box<StippleOptions>),
+    /// Draw moving pictures with equal dots, which stay where nothing moves.
+    ///
+    /// How many dots a darkness gets is fixed by the first frame that is not blank. Where a frame is as the one before,
+    /// so are its dots: all frames have one seed, and a dot depends on what is around it only.
+    Frames(FramesOptions),
     /// Say of a photograph what its parts must know: how large it is, how dark, and how bright.
     ///
     /// For `stipple --part --survey`: it is read once, instead of once a part.

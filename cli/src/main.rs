@@ -4,6 +4,7 @@
 mod args;
 mod command;
 mod format;
+mod frames;
 mod order;
 mod page;
 mod part;
@@ -40,6 +41,7 @@ fn process(arguments: &Arguments) -> Result<(), Failure> {
             Some(part) => command::part::run(options, part),
             None => command::stipple::run(options),
         },
+        Command::Frames(options) => command::frames::run(options),
         Command::Survey(options) => command::survey::run(options),
         Command::Merge(options) => merge::run(options),
         Command::Envmap(options) => envmap::run(options),

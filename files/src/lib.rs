@@ -19,3 +19,4 @@ pub mod picture;
 pub mod point_list;
 #[cfg(feature = "program")]
 pub mod progress;
+pub mod y4m;

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::pixels::{InvalidPixels, MapError, Pixels};
 use super::raster::{Extremes, Lattice, RUN, Texels};
 use super::view::PixelView;
-use super::{Importance, pixels, retreat};
+use super::{Importance, pixels};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 use crate::simd::Simd;
@@ -166,6 +166,20 @@ impl ImageMap {
         self.sum / self.pixels.len() as f64
     }
 
+    /// Where a point goes that was to go to `moved`, a pixel where it may not be: to the nearest place of
+    /// the pixels whose value `may_lie` admits; the center if all are farther from it than `moved` is.
+    #[inline(never)]
+    pub(super) fn nearest_side(
+        &self,
+        center: DVec2,
+        moved: DVec2,
+        may_lie: impl Fn(f64) -> bool,
+    ) -> DVec2 {
+        let Lattice { width, .. } = self.lattice;
+        let may_lie = |x: usize, y: usize| may_lie(self.pixels[y * width + x].into());
+        self.lattice.nearest(center, moved, may_lie).unwrap_or(center)
+    }
+
     /// Column and row of the pixel under a point, clamped to the image.
     pub(crate) fn texel(&self, at: DVec2) -> (usize, usize) {
         self.lattice.texel(at)
@@ -223,7 +237,7 @@ impl Importance for ImageMap {
             for i in (0..x.len()).filter(|i| above[*i] == 0) {
                 let (center, moved) =
                     (DVec2::new(center_x[i], center_y[i]), DVec2::new(x[i], y[i]));
-                [x[i], y[i]] = retreat(center, moved, |at| self.value(at) > 0.0).to_array();
+                [x[i], y[i]] = self.nearest_side(center, moved, |value| value > 0.0).to_array();
             }
         }
     }

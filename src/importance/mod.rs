@@ -97,8 +97,8 @@ pub trait Importance {
     /// `centers`, is accepted where the importance is above `needed`, and would be moved to `moved`; both are
     /// places of the domain. `moved` is left with where it goes: never where the importance is 0; by default,
     /// back towards the center until it is not. Importance with hard edges keeps points on their side.
-    /// Not farther from where it was to go than [`longest_constraint`](Self::longest_constraint), unless
-    /// on the way from the center. The result for a point depends on that point alone.
+    /// No farther from the center than `moved` was, but for
+    /// [`longest_constraint`](Self::longest_constraint). The result for a point depends on that point alone.
     #[inline]
     fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
         let _ = needed;
@@ -107,9 +107,8 @@ pub trait Importance {
         });
     }
 
-    /// The farthest that [`constrain`](Self::constrain) takes a point away from where relaxation moved it, in
-    /// units, other than towards its center. 0: it is asked only where
-    /// [`lower_bound`](Self::lower_bound) is 0.
+    /// By how much, in units, [`constrain`](Self::constrain) takes a point farther from its center than
+    /// relaxation moved it, at most. 0: it is asked only where [`lower_bound`](Self::lower_bound) is 0.
     fn longest_constraint(&self) -> f64 {
         0.0
     }

@@ -11,9 +11,7 @@ use glam::DVec2;
 
 use super::planes::{Area, Layout, Planes, Scales};
 use super::raster::{Grid, RUN, SAME_SIDE};
-use super::{
-    BilinearMap, ImageMap, Importance, InvalidPixels, MapError, Pixels, constrain_each, retreat,
-};
+use super::{BilinearMap, ImageMap, Importance, InvalidPixels, MapError, Pixels, constrain_each};
 use crate::domain::{Disc, Domain};
 use crate::position::Scalar;
 
@@ -27,29 +25,6 @@ const FARTHEST: f64 = 8.0;
 
 /// The plane of details holds 0 … 255.
 const FULL_DETAIL: f64 = 1.0 / 255.0;
-
-/// A point that lands where it may not be goes back across the edge in steps of this part of the way that
-/// it was moved: along the edge the points stay as far apart as relaxation put them.
-const RETREATS: u32 = 16;
-
-/// Where it looks for the side that it came from.
-const DIRECTIONS: [DVec2; 8] = {
-    const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
-    let at = DVec2::new;
-    [
-        at(1.0, 0.0),
-        at(H, H),
-        at(0.0, 1.0),
-        at(-H, H),
-        at(-1.0, 0.0),
-        at(-H, -H),
-        at(0.0, -1.0),
-        at(H, -H),
-    ]
-};
-
-/// A point that is put on a pixel stays so far from the pixel's border.
-const PIXEL_BORDER: f64 = 1.0 / 256.0;
 
 /// An image of importance, made ready for a given number of relaxed points on it. Covers [0, width) ×
 /// [0, height), x right, y down.
@@ -99,9 +74,9 @@ impl Whole {
     }
 
     fn layout(&self, part: &Area, scales: &Scales) -> Layout {
-        // From a point's center to where it is moved to, and from there across an edge; it may look half a spacing
-        // and a pixel farther.
-        let margin = 2.0 * FARTHEST * scales.mean_spacing + 2.0 * scales.largest + 3.0;
+        // From a point's center to where it ends, and from its center to where it was moved to or may go; the pixels
+        // around those.
+        let margin = 2.0 * FARTHEST * scales.mean_spacing + 3.0;
         let size = (self.width, self.height);
         Layout::new(&part.grown(margin as usize, size), size, scales)
     }
@@ -241,15 +216,6 @@ impl StippleMap {
         f64::from(map.pixels()[y * map.size().0 + x])
     }
 
-    /// A point that rounding to single precision leaves on its pixel.
-    fn within_pixel(&self, at: DVec2) -> DVec2 {
-        let [x, y] = self.pixel(at);
-        let low = self.corner() + DVec2::new(x as f64, y as f64);
-        let inside = at.clamp(low + PIXEL_BORDER, low + (1.0 - PIXEL_BORDER));
-        // What lies beyond the image does not come in by this.
-        if (inside - at).abs().max_element() < 1.0 - PIXEL_BORDER { inside } else { at }
-    }
-
     /// A place on the way to `moved` that is not too far from a point's center.
     #[inline(always)]
     fn near(&self, center: DVec2, moved: DVec2) -> DVec2 {
@@ -259,37 +225,14 @@ impl StippleMap {
     }
 
     /// Where a point that is not accepted at `moved` goes: nowhere if that is on its own side of an edge,
-    /// else up the slope of the acceptance around it, else towards its center.
+    /// else to the nearest place that is, or where its rank is wanted.
     fn back_across_the_edge(&self, center: DVec2, moved: DVec2, needed: f64) -> DVec2 {
         let tone = self.accepted_at(center);
-        let may_lie = |p: DVec2| {
-            let there = self.accepted_at(p);
-            needed < there || (there > 0.0 && there >= SAME_SIDE * tone)
-        };
-        if may_lie(moved) {
+        let may_lie = |there: f64| needed < there || (there > 0.0 && there >= SAME_SIDE * tone);
+        if may_lie(self.accepted_at(moved)) {
             return moved;
         }
-        let step = moved - center;
-        let length = libm::sqrt(step.x * step.x + step.y * step.y).min(self.scales.largest);
-        let reach = (0.5 * self.scales.spacing(tone)).max(0.75);
-        let mut inward = DVec2::ZERO;
-        for direction in DIRECTIONS {
-            inward += direction * self.accepted_at(moved + direction * reach);
-        }
-        let steepness = libm::sqrt(inward.x * inward.x + inward.y * inward.y);
-        if steepness > 0.0 {
-            let step = inward * (length / (f64::from(RETREATS) * steepness));
-            for i in 1..=RETREATS {
-                let p = moved + step * f64::from(i);
-                if may_lie(p) {
-                    return self.within_pixel(p);
-                }
-            }
-        }
-        match retreat(center, moved, may_lie) {
-            p if p == center => p,
-            p => self.within_pixel(p),
-        }
+        self.acceptance.map().nearest_side(center, moved, may_lie)
     }
 }
 
@@ -335,18 +278,25 @@ impl Importance for StippleMap {
         for ((x, y), (local, detail)) in runs.zip(local.chunks_mut(RUN).zip(detail.chunks_mut(RUN)))
         {
             let points = x.iter().zip(y).map(|(x, y)| [*x, *y]);
+            let mut phase = [0.0; RUN];
+            let phase = &mut phase[..x.len()];
             match grid.cells(points.clone()) {
                 Some(cells) => {
-                    cells.read(&self.phase, local);
+                    cells.read(&self.phase, phase);
                     cells.read(&self.detail, detail);
                     detail.iter_mut().for_each(|detail| *detail *= FULL_DETAIL);
                 }
                 None => {
-                    for ((local, detail), at) in local.iter_mut().zip(detail).zip(points) {
+                    for ((phase, detail), at) in phase.iter_mut().zip(detail).zip(points) {
                         let at = DVec2::from(at);
-                        (*local, *detail) = (self.phase_at(at), self.detail_at(at));
+                        (*phase, *detail) = (self.phase_at(at), self.detail_at(at));
                     }
                 }
+            }
+            // What lies across an edge, in the box or in the pixels around, makes points no sparser than
+            // what accepted them.
+            for (local, phase) in local.iter_mut().zip(phase) {
+                *local = if *phase > *local { *phase } else { *local };
             }
         }
     }
@@ -364,8 +314,8 @@ impl Importance for StippleMap {
     }
 
     fn longest_constraint(&self) -> f64 {
-        // Back across the edge, and to within a pixel.
-        self.scales.largest.max(1.0) + 2.0 * PIXEL_BORDER
+        // None goes farther; but each is asked about, wherever it is.
+        f64::MIN_POSITIVE
     }
 }
 
@@ -410,7 +360,8 @@ mod tests {
             assert_eq!((local[i], detail[i]), (one_local[0], one_detail[0]));
             let settled = constrained(&map, DVec2::new(20.0, 15.0), at, needed[i]);
             assert_eq!(settled, DVec2::new(to_x[i], to_y[i]));
-            assert!(map.accepted_at(at) <= needed[i] || settled == at);
+            let near = map.near(DVec2::new(20.0, 15.0), at);
+            assert!(map.accepted_at(near) <= needed[i] || settled == near);
             moved += usize::from(settled != at);
         }
         assert!((20..180).contains(&moved), "{moved}");

@@ -59,8 +59,11 @@ pub(crate) fn points<I: Importance>(sampling: &Sampling<'_, I>) -> Vec<(u64, [f6
                 Some(table) => {
                     let moved = fixed + step(sampling, table, at, value, &path);
                     let needed = sampling.scale().importance_of(rank);
+                    let settled = constrained(sampling.importance(), at, moved, needed);
                     match domain.contains(moved) {
-                        true => constrained(sampling.importance(), at, moved, needed),
+                        // A center beyond the border asks as if it were there, but goes no farther for it.
+                        true if settled.distance(fixed) > moved.distance(fixed) => fixed,
+                        true => settled,
                         false => moved,
                     }
                 }

@@ -43,6 +43,14 @@ fn inner_corners(placement: &Placement<'_>) -> (DVec2, DVec2) {
     (domain.min(), DVec2::from(domain.max().to_array().map(f64::next_down)))
 }
 
+/// Whether a point that was to go from `center` to `moved` gets as far as `settled`. Always from centers in the
+/// domain; from others, which ask as if they were on its border, the walk has to know how far a point goes.
+#[inline(always)]
+pub(crate) fn reaches(center: DVec2, moved: DVec2, settled: DVec2) -> bool {
+    let squared = |step: DVec2| step.x * step.x + step.y * step.y;
+    squared(settled - center) <= squared(moved - center)
+}
+
 /// A chunk's points on their way.
 struct Displacer<'w, 'a, I> {
     sampling: &'w Sampling<'a, I>,
@@ -314,9 +322,11 @@ impl<I: Importance> Displacer<'_, '_, I> {
         // moved out of it end out of it.
         let (mut from_x, mut from_y) = ([0.0; RUN], [0.0; RUN]);
         let (mut at_x, mut at_y, mut needed) = ([0.0; RUN], [0.0; RUN], [0.0; RUN]);
+        let mut centers = [[S::default(); 2]; RUN];
         for k in 0..len {
             let i = run.start + k;
             let (x, y) = (chunk.x[i], chunk.y[i]);
+            centers[k] = [x, y];
             [from_x[k], from_y[k]] = self.nearest(x, y).to_array();
             (chunk.x[i], chunk.y[i]) = (x + dx[k], y + dy[k]);
             [at_x[k], at_y[k]] = self.nearest(chunk.x[i], chunk.y[i]).to_array();
@@ -333,9 +343,13 @@ impl<I: Importance> Displacer<'_, '_, I> {
             let (moved, settled) =
                 (DVec2::new(moved_x[k], moved_y[k]), DVec2::new(at_x[k], at_y[k]));
             if settled != moved {
-                let place = corner + DVec2::new(chunk.x[i].to_f64(), chunk.y[i].to_f64());
-                if place == moved {
-                    [chunk.x[i], chunk.y[i]] = (settled - corner).to_array().map(S::from_f64);
+                let place = |x: S, y: S| corner + DVec2::new(x.to_f64(), y.to_f64());
+                if place(chunk.x[i], chunk.y[i]) == moved {
+                    let [x, y] = centers[k];
+                    [chunk.x[i], chunk.y[i]] = match reaches(place(x, y), moved, settled) {
+                        true => (settled - corner).to_array().map(S::from_f64),
+                        false => [x, y],
+                    };
                 }
             }
         }
@@ -390,7 +404,8 @@ impl<I: Importance> Displacer<'_, '_, I> {
             if settled == to {
                 continue;
             }
-            (chunk.x[i], chunk.y[i]) = if seam.is_between(center, moved) {
+            let stays = seam.is_between(center, moved) || !placement.domain().contains(settled);
+            (chunk.x[i], chunk.y[i]) = if stays {
                 // No way leads over the seam: the point stays at its center.
                 (x, y)
             } else {

@@ -60,14 +60,7 @@ pub fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsErro
         }
         Ok(())
     })
-    .map_err(|error| match error {
-        DotsError::Taker(count) => DotsError::Memory(count),
-        DotsError::Map(error) => DotsError::Map(error),
-        DotsError::Sampling(error) => DotsError::Sampling(error),
-        DotsError::Exact(error) => DotsError::Exact(error),
-        DotsError::Refine(error) => DotsError::Refine(error),
-        DotsError::Memory(count) => DotsError::Memory(count),
-    })?;
+    .map_err(|error| error.map_taker(DotsError::Memory))?;
     if wish.ranked {
         let mut order: Vec<usize> = (0..dots.len()).collect();
         order.sort_by(|&one, &other| keys[one].total_cmp(&keys[other]));
@@ -77,7 +70,10 @@ pub fn unrefined<E>(picture: Picture, wish: Wish) -> Result<Vec<DVec2>, DotsErro
 }
 
 /// Refines dots where they are.
-fn refined(
+///
+/// # Errors
+/// [`RefineError`].
+pub(crate) fn refined(
     picture: &Picture,
     dots: &mut [DVec2],
     wish: Wish,

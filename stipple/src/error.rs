@@ -20,6 +20,20 @@ pub enum DotsError<E> {
     Taker(E),
 }
 
+impl<E> DotsError<E> {
+    /// The same, or for a taker's failure what `of` makes of it.
+    pub(crate) fn map_taker<F>(self, of: impl FnOnce(E) -> DotsError<F>) -> DotsError<F> {
+        match self {
+            Self::Map(error) => DotsError::Map(error),
+            Self::Sampling(error) => DotsError::Sampling(error),
+            Self::Exact(error) => DotsError::Exact(error),
+            Self::Refine(error) => DotsError::Refine(error),
+            Self::Memory(count) => DotsError::Memory(count),
+            Self::Taker(error) => of(error),
+        }
+    }
+}
+
 impl<E: fmt::Display> fmt::Display for DotsError<E> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

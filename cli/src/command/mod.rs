@@ -1,6 +1,7 @@
 //! The subcommands, a module each.
 
 pub(crate) mod envmap;
+pub(crate) mod frames;
 pub(crate) mod measure;
 pub(crate) mod merge;
 pub(crate) mod part;

@@ -1,6 +1,7 @@
 //! The program as its user meets it: files in, files out, one line when something is wrong.
 mod envmap;
 mod files;
+mod frames;
 mod hostile;
 mod inputs;
 mod measure;

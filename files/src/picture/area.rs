@@ -28,6 +28,28 @@ impl Area {
         self.columns.contains(&x) && self.rows.contains(&y)
     }
 
+    /// How many pixels there are.
+    pub(super) fn count(&self) -> usize {
+        self.columns.len().saturating_mul(self.rows.len())
+    }
+
+    /// Whether all of another are of this one.
+    pub(super) fn covers(&self, other: &Self) -> bool {
+        self.meet(other) == *other
+    }
+
+    /// The smallest area that holds this one and whole parts of a picture of this size, each of `part` pixels across
+    /// and down but for the last.
+    pub(super) fn widened(&self, part: (usize, usize), size: (usize, usize)) -> Self {
+        let widened = |range: &Range<usize>, part: usize, length: usize| {
+            range.start / part * part..range.end.div_ceil(part).saturating_mul(part).min(length)
+        };
+        Self {
+            columns: widened(&self.columns, part.0, size.0),
+            rows: widened(&self.rows, part.1, size.1),
+        }
+    }
+
     /// What is of both.
     pub(super) fn meet(&self, other: &Self) -> Self {
         let meet = |a: &Range<usize>, b: &Range<usize>| a.start.max(b.start)..a.end.min(b.end);

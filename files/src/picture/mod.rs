@@ -9,6 +9,7 @@ mod color;
 mod directory;
 mod exif;
 mod format;
+mod grays;
 mod jpeg;
 #[cfg(all(test, feature = "every-format"))]
 mod kinds;
@@ -43,6 +44,7 @@ use std::path::Path;
 use std::sync::Once;
 
 pub use format::Format;
+pub(crate) use grays::Grays;
 pub use scan::Scan;
 pub use tone::{Levels, Tone};
 

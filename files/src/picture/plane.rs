@@ -68,27 +68,18 @@ impl<P: Pixel> Plane<P> {
         pixels.try_reserve_exact(count).map_err(|_| limits::too_large(width, height, bytes))?;
         pixels.resize(count, background);
 
-        let whole = upright(size, orientation);
         let (turned, [left_right, up_down]) = turns(orientation);
-        let ends = |range: &Range<usize>, length: usize, mirrored: bool| {
-            if mirrored { length - range.end..length - range.start } else { range.clone() }
-        };
-        let across = ends(&window.columns, whole.0, left_right);
-        let down = ends(&window.rows, whole.1, up_down);
-        // Of the window's rows, and of the pixels in them.
+        // To the next pixel of a row and of a column of the window, and from the first one stored.
         let step_x = if left_right { -1 } else { 1 };
         let step_y = if up_down { -(width as isize) } else { width as isize };
         let first = |mirrored: bool, length: usize| if mirrored { length - 1 } else { 0 };
-        // A pixel outside of the window may be beyond the numbers there are, but none within is.
         let corner = (first(up_down, height) * width + first(left_right, width)) as isize;
+        let (step_x, step_y) = if turned { (step_y, step_x) } else { (step_x, step_y) };
+        let stored = stored(size, orientation, window);
+        // What lies before the window may be beyond the numbers there are, but no pixel within is.
         let origin = corner
-            .wrapping_sub((across.start as isize).wrapping_mul(step_x))
-            .wrapping_sub((down.start as isize).wrapping_mul(step_y));
-        let (stored, step_x, step_y) = if turned {
-            (Area { columns: down, rows: across }, step_y, step_x)
-        } else {
-            (Area { columns: across, rows: down }, step_x, step_y)
-        };
+            .wrapping_sub((stored.columns.start as isize).wrapping_mul(step_x))
+            .wrapping_sub((stored.rows.start as isize).wrapping_mul(step_y));
         Ok(Self {
             picture: Decoded {
                 width,
@@ -158,6 +149,28 @@ impl<P: Pixel> Plane<P> {
 /// The size of the upright picture of a file of this size.
 pub(super) fn upright((width, height): (usize, usize), orientation: Orientation) -> (usize, usize) {
     if turns(orientation).0 { (height, width) } else { (width, height) }
+}
+
+/// Where an area of the upright picture of a file of this size is stored.
+pub(super) fn stored(size: (usize, usize), orientation: Orientation, area: &Area) -> Area {
+    let (width, height) = upright(size, orientation);
+    let (turned, [left_right, up_down]) = turns(orientation);
+    let columns = mirrored(&area.columns, width, left_right);
+    let rows = mirrored(&area.rows, height, up_down);
+    if turned { Area { columns: rows, rows: columns } } else { Area { columns, rows } }
+}
+
+/// Where a stored area of such a file lies in the upright picture.
+pub(super) fn shown(size: (usize, usize), orientation: Orientation, area: &Area) -> Area {
+    let (width, height) = upright(size, orientation);
+    let (turned, [left_right, up_down]) = turns(orientation);
+    let Area { columns, rows } = area;
+    let (columns, rows) = if turned { (rows, columns) } else { (columns, rows) };
+    Area { columns: mirrored(columns, width, left_right), rows: mirrored(rows, height, up_down) }
+}
+
+fn mirrored(range: &Range<usize>, length: usize, mirrored: bool) -> Range<usize> {
+    if mirrored { length - range.end..length - range.start } else { range.clone() }
 }
 
 /// How many times as wide as high a pixel is upright that as stored is so many times; what is no shape is square.
@@ -236,6 +249,7 @@ mod tests {
                     assert_eq!(found.stored().columns.len() * found.stored().rows.len(), {
                         window.columns.len() * window.rows.len()
                     });
+                    assert_eq!(shown(size, orientation, found.stored()), window);
                     assert_eq!(filled(found), window.cut(&whole, &pixels), "{tag} {window:?}");
                 }
             }

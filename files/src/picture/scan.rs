@@ -34,7 +34,12 @@ pub struct Scan {
     /// From the pixels to square ones.
     squares: Squares,
     warnings: Vec<String>,
+    /// What was decoded for the last window, if that is much more than the window.
+    band: Option<(Area, Vec<f32>)>,
 }
+
+/// The most pixels of [`Scan::band`]: 256 MiB of them.
+const BAND: usize = 1 << 26;
 
 /// Where a scan's pixels are.
 enum Pixels {
@@ -75,7 +80,7 @@ impl Scan {
         }
         let mut warnings = pixels.warnings().to_vec();
         warnings.extend(squares.warning());
-        Ok(Self { format, pixels, squares, warnings })
+        Ok(Self { format, pixels, squares, warnings, band: None })
     }
 
     /// Pixels across and down, upright and square.
@@ -97,7 +102,7 @@ impl Scan {
     }
 
     /// The least and greatest brightness of a float file's pixels, before exposure and clipping: of all, or where
-    /// windows are read of those in the windows so far.
+    /// windows are read of those that were decoded.
     #[must_use]
     pub fn range(&self) -> Option<(f64, f64)> {
         match &self.pixels {
@@ -113,7 +118,8 @@ impl Scan {
     /// numbers as of [`read_layer`](super::read_layer). Without columns or rows there are none.
     ///
     /// Takes time and memory for the window and for what is decoded to have it: tiles and blocks to their borders,
-    /// strips across all of the picture. What an earlier window decoded is decoded again.
+    /// strips across all of the picture. If that is more than twice the window and at most 64 million pixels, it is
+    /// kept until another window needs something else, so that windows side by side decode their strips once.
     ///
     /// # Errors
     /// [`PictureError::Outside`] if not all of them are there, [`PictureError::TooLarge`] and
@@ -124,8 +130,7 @@ impl Scan {
         columns: Range<usize>,
         rows: Range<usize>,
     ) -> Result<Vec<f32>, PictureError> {
-        let Self { format, pixels, squares, .. } = self;
-        let (width, height) = squares.size;
+        let (width, height) = self.squares.size;
         if columns.end > width || rows.end > height {
             return Err(PictureError::Outside { width, height });
         }
@@ -133,14 +138,36 @@ impl Scan {
         if window.is_empty() {
             return Ok(Vec::new());
         }
-        let stored = squares.stored(&window);
-        let mut importance = caught(*format, || pixels.window(&stored))?;
-        if squares.warning().is_some() {
-            importance = squares.drawn(&window, &stored, &importance)?;
+        let stored = self.squares.stored(&window);
+        let mut importance = caught(self.format, || self.read(&stored))?;
+        if self.squares.warning().is_some() {
+            importance = self.squares.drawn(&window, &stored, &importance)?;
         }
         // Resampling rounds.
         importance.iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
         Ok(importance)
+    }
+
+    /// The pixels of a window, as they are stored.
+    fn read(&mut self, window: &Area) -> Result<Vec<f32>, PictureError> {
+        let Self { pixels, band, .. } = self;
+        if let Some((area, band)) = band
+            && area.covers(window)
+        {
+            return Ok(window.cut(area, band));
+        }
+        let reach = pixels.reach(window);
+        if reach.count() / 2 > window.count() && reach.count() <= BAND {
+            // Room for the new one.
+            *band = None;
+            // What is amiss outside of the window does not matter.
+            if let Ok(importance) = pixels.window(&reach) {
+                let part = window.cut(&reach, &importance);
+                *band = Some((reach, importance));
+                return Ok(part);
+            }
+        }
+        pixels.window(window)
     }
 }
 
@@ -189,6 +216,17 @@ impl Pixels {
             Self::Tiff(page) => &page.warnings,
             #[cfg(feature = "every-format")]
             Self::OpenExr(_) => &[],
+        }
+    }
+
+    /// All that is decoded for a window.
+    fn reach(&self, window: &Area) -> Area {
+        match self {
+            Self::Whole(_) => window.clone(),
+            #[cfg(feature = "every-format")]
+            Self::Tiff(page) => page.reach(window),
+            #[cfg(feature = "every-format")]
+            Self::OpenExr(blocks) => blocks.reach(window),
         }
     }
 

@@ -13,10 +13,9 @@
 //!    and nothing where the pixel is 0.
 //!
 //! The *phase* is that with the mean over s₁ in step 2, the *detail* the deviation over the mean, of the
-//! box or of the quadrant. *Acceptance* is the tone, and what the tone lacks or exceeds at each pixel is
-//! spread over that pixel's own box, in proportion to the tones there: so the sum is the image's, and
-//! nothing comes where the image is 0.
-
+//! box or of the quadrant, and half of the most or more beside an edge. *Acceptance* is the tone, and what the
+//! tone lacks or exceeds at each pixel is spread over that pixel's own box, in proportion to the tones there: so
+//! the sum is the image's, and nothing comes where the image is 0.
 //!
 //! Sums begin anew in every page, a square of some reaches of a box, so that the maps of a part of an image are
 //! those of the whole, to the bit.
@@ -56,6 +55,11 @@ const FINE_RANGE: [f64; 2] = [0.35, 0.6];
 /// The relative deviations of the box between which texture without an edge counts as finer than the
 /// spacing.
 const TEXTURE_RANGE: [f64; 2] = [0.6, 0.9];
+
+/// The least detail beside an edge, where points come back from across it: the layer for detail moves them
+/// less far. Of 90,000 points on letters and thin strokes, 164 have another within half a spacing without it,
+/// 20 at 0.4, 8 at 0.5 and at 0.75; from 0.75 on, stripes of a few spacings have more again.
+const EDGE_DETAIL: f64 = 0.5;
 
 /// The part of the way from `low` to `high`, 0 … 1.
 fn share([low, high]: [f64; 2], at: f64) -> f64 {
@@ -211,6 +215,7 @@ fn surroundings(sums: &Sums, at: [usize; 2], value: f64, scales: &Scales) -> Sur
     let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
     let all = deviation([local, square]);
     let mut unevenness = ratio(all, local);
+    let mut least_detail = 0.0;
     if unevenness > EDGE_RANGE[0] {
         let quadrants = sums.quadrants(at, spacing).map(|means| (means[0], deviation(means)));
         let (mean, least) =
@@ -226,8 +231,10 @@ fn surroundings(sums: &Sums, at: [usize; 2], value: f64, scales: &Scales) -> Sur
         phase += edge * (of_points - phase);
         let across = ratio(libm::fabs(of_points - side), side) + ratio(least, mean);
         unevenness += edge * (across - unevenness);
+        least_detail = edge * EDGE_DETAIL;
     }
-    let detail = (share(DETAIL_RANGE, unevenness) * 255.0 + 0.5) as u8;
+    let detail = share(DETAIL_RANGE, unevenness).max(least_detail);
+    let detail = (detail * 255.0 + 0.5) as u8;
     Surroundings { tone, phase, detail, half }
 }
 

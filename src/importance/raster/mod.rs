@@ -4,6 +4,7 @@ mod bilinear;
 mod extremes;
 mod nearest;
 mod round;
+mod side;
 
 pub(super) use bilinear::{Grid, SAME_SIDE};
 pub(super) use extremes::{Extremes, Texels};

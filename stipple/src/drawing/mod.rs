@@ -9,6 +9,7 @@ pub mod npy;
 mod pdf;
 mod png;
 mod svg;
+mod y4m;
 
 use std::fmt;
 use std::io;
@@ -24,6 +25,7 @@ pub use self::npy::Npy;
 pub use self::pdf::Pdf;
 pub use self::png::Png;
 pub use self::svg::Svg;
+pub use self::y4m::Y4m;
 
 /// A file being filled with the dots of one layer after the other.
 pub trait Drawing {

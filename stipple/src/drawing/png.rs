@@ -42,29 +42,15 @@ impl<'a, W: Write> Png<'a, W> {
     /// # Errors
     /// [`DrawingError::TooLarge`], before anything is allocated.
     pub fn new(out: W, look: &'a Look) -> Result<Self, DrawingError> {
-        let resolution = look.sheet.resolution();
-        let size = (look.sheet.size * resolution).round().max(DVec2::ONE);
-        let DVec2 { x: width, y: height } = size;
-        let too_large = DrawingError::TooLarge { width, height, page: look.sheet.is_page() };
-        // Written so that a product beyond all floats is too large as well.
-        let fits = width * height * size_of::<u16>() as f64 <= MEMORY_LIMIT as f64
-            && width.max(height) <= f64::from(i32::MAX);
-        if !fits {
-            return Err(too_large);
-        }
-        let radius = look.mark.width() / 2.0 * resolution;
-        // A dot much larger than the drawing covers no more of it, and its square must be finite.
-        let radius = radius.min(1e3 * (width + height));
-        let Some(canvas) = Canvas::new(width as usize, height as usize, radius) else {
-            return Err(too_large);
-        };
+        let (canvas, [width, height]) = canvas(look)?;
+        let scale = DVec2::new(width.into(), height.into()) / look.sheet.size;
         Ok(Self {
             out,
             look,
             canvas,
-            scale: size / look.sheet.size,
-            width: width as u32,
-            height: height as u32,
+            scale,
+            width,
+            height,
             ink: Color::BLACK,
             below: None,
             inked: false,
@@ -75,6 +61,30 @@ impl<'a, W: Write> Png<'a, W> {
     /// What each amount of ink looks like on the ground.
     fn mixed(&self) -> Vec<Color> {
         (0..=FULL).map(|ink| mix(self.look.ground, self.ink, ink, self.look.linear)).collect()
+    }
+}
+
+/// An empty canvas for a drawing that looks so, and how many pixels it has across and down.
+///
+/// # Errors
+/// [`DrawingError::TooLarge`], before anything is allocated.
+pub(super) fn canvas(look: &Look) -> Result<(Canvas, [u32; 2]), DrawingError> {
+    let resolution = look.sheet.resolution();
+    let size = (look.sheet.size * resolution).round().max(DVec2::ONE);
+    let DVec2 { x: width, y: height } = size;
+    let too_large = DrawingError::TooLarge { width, height, page: look.sheet.is_page() };
+    // Written so that a product beyond all floats is too large as well.
+    let fits = width * height * size_of::<u16>() as f64 <= MEMORY_LIMIT as f64
+        && width.max(height) <= f64::from(i32::MAX);
+    if !fits {
+        return Err(too_large);
+    }
+    let radius = look.mark.width() / 2.0 * resolution;
+    // A dot much larger than the drawing covers no more of it, and its square must be finite.
+    let radius = radius.min(1e3 * (width + height));
+    match Canvas::new(width as usize, height as usize, radius) {
+        Some(canvas) => Ok((canvas, [width as u32, height as u32])),
+        None => Err(too_large),
     }
 }
 
@@ -180,7 +190,7 @@ fn mix_row(
 ///
 /// A pixel half covered is half as bright either in encoded values or in linear light, whichever the
 /// dots follow.
-fn mix(Color(below): Color, Color(above): Color, ink: u16, linear: bool) -> Color {
+pub(super) fn mix(Color(below): Color, Color(above): Color, ink: u16, linear: bool) -> Color {
     let covered = f64::from(ink) / f64::from(FULL);
     Color(std::array::from_fn(|k| {
         let [below, above] = [below[k], above[k]].map(|value| f64::from(value) / 255.0);

@@ -82,6 +82,14 @@ impl<P: Pixel> Blocks<P> {
         self.view.aspect
     }
 
+    /// All of the picture that is decoded for a window.
+    pub(in super::super) fn reach(&self, window: &Area) -> Area {
+        let header = &self.meta.headers[self.index];
+        let (block, layer) = (header.max_block_pixel_size(), header.layer_size);
+        let wanted = self.view.of_layer(window).widened((block.0, block.1), (layer.0, layer.1));
+        self.view.of_picture(&wanted, window)
+    }
+
     /// The least and greatest brightness of the pixels that were read.
     pub(in super::super) fn range(&self) -> Option<(f64, f64)> {
         Toner::range(&self.view.toner)
@@ -100,7 +108,10 @@ impl<P: Pixel> Blocks<P> {
         let mut plane = view.plane(window)?;
         let wanted = view.of_layer(window);
         for block in blocks.iter().filter(|block| !block.area.meet(&wanted).is_empty()) {
-            source.seek(SeekFrom::Start(block.offset))?;
+            // A seek to where it is would read anew what is buffered.
+            if source.stream_position()? != block.offset {
+                source.seek(SeekFrom::Start(block.offset))?;
+            }
             let chunk = Chunk::read(source, meta).map_err(failure)?;
             let found = UncompressedBlock::decompress_chunk(chunk, meta, false).map_err(failure)?;
             let start = (block.area.columns.start, block.area.rows.start);

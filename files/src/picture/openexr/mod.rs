@@ -144,6 +144,19 @@ impl<P: Pixel> View<P> {
         Area { columns: shifted(columns, self.shift.0), rows: shifted(rows, self.shift.1) }
     }
 
+    /// The columns and rows of the picture that hold those of the layer, and those of a window.
+    fn of_picture(&self, layer: &Area, window: &Area) -> Area {
+        let shifted = |range: &Range<usize>, shift: i64, length: usize, least: &Range<usize>| {
+            let own = |place: usize| usize::try_from(place as i64 + shift).unwrap_or(0).min(length);
+            own(range.start).min(least.start)..own(range.end).max(least.end)
+        };
+        let (columns, rows) = (&layer.columns, &layer.rows);
+        Area {
+            columns: shifted(columns, self.shift.0, self.size.0, &window.columns),
+            rows: shifted(rows, self.shift.1, self.size.1, &window.rows),
+        }
+    }
+
     /// Sets a pixel of the layer, if it is one of the plane.
     fn set(&self, plane: &mut Plane<P>, x: usize, y: usize, samples: &Samples) {
         let shifted = |position: usize, shift: i64| {

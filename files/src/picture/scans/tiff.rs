@@ -113,6 +113,26 @@ fn only_the_chunks_of_a_window_are_read() {
 }
 
 #[test]
+fn strips_are_read_once_for_windows_side_by_side() {
+    let (_, _, bytes) = gray((1024, 1024), (0, 16)).file();
+    let watched = Watched::new(bytes.clone());
+    let seen = watched.seen.clone();
+    let wanted = Wanted { tone: TONES[0], layer: None, radiance: false };
+    let mut scan = Scan::of_source(Source::Watched(watched), Path::new("a"), wanted).unwrap();
+    let expected = whole(&bytes, TONES[0]).unwrap();
+    for rows in [500..590, 580..670] {
+        for (i, left) in (0..1024).step_by(128).enumerate() {
+            seen.lock().unwrap().fill(false);
+            let found = scan.window(left..left + 128, rows.clone()).unwrap();
+            assert!(found == cut(&expected, left..left + 128, rows.clone()));
+            let read = seen.lock().unwrap().iter().filter(|&&seen| seen).count();
+            let strips = rows.end.div_ceil(16) - rows.start / 16;
+            assert_eq!(read, if i == 0 { strips * 16 * 1024 } else { 0 });
+        }
+    }
+}
+
+#[test]
 fn pictures_and_files_may_be_larger_than_the_limit() {
     // All tiles but one are the same, so that ten thousand million pixels are a short file.
     let mut made = gray((100_000, 100_000), (256, 256));

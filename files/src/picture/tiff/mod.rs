@@ -129,6 +129,13 @@ impl<P: Pixel> Page<P> {
         plane::upright((self.layout.width, self.layout.height), self.orientation)
     }
 
+    /// All that is decoded for a window.
+    pub(super) fn reach(&self, window: &Area) -> Area {
+        let size = (self.layout.width, self.layout.height);
+        let stored = plane::stored(size, self.orientation, window);
+        plane::shown(size, self.orientation, &stored.widened(self.layout.chunk, size))
+    }
+
     /// The least and greatest brightness of a float file's pixels that were read.
     pub(super) fn range(&self) -> Option<(f64, f64)> {
         self.painter.toner.as_ref().filter(|_| self.float).and_then(Toner::range)
