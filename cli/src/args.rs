@@ -21,8 +21,8 @@ use twelvefold_stipple::wish::Centers;
 /// The most dots that are drawn.
 pub(crate) const MAX_POINTS: u64 = 4_000_000_000;
 
-/// The most that are refined, which takes a hundred bytes a dot.
-pub(crate) const MAX_REFINED: u64 = 50_000_000;
+/// The most that are held in memory: to be refined, or for a file that begins with their number.
+pub(crate) const MAX_HELD: u64 = 50_000_000;
 
 /// The most points that are counted exactly: they are sorted in memory, some 90 bytes each.
 pub(crate) const MAX_EXACT: u64 = 10_000_000;
@@ -326,9 +326,9 @@ pub(crate) struct StippleOptions {
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) format: Option<Format>,
 
-    /// How many dots, at most 4,000,000,000, and 50,000,000 that are refined [default: a ninth of the sum of all pixels' darkness from 0 to 1,
-    /// that is one every 3 pixels where the photograph is black; at least 3,000 where that many fit four
-    /// to a pixel, at most 30,000].
+    /// How many dots, at most 4,000,000,000; 50,000,000 that are refined, or in PDF and NPY [default: a ninth of
+    /// the sum of all pixels' darkness from 0 to 1, that is one every 3 pixels where the photograph is black; at
+    /// least 3,000 where that many fit four to a pixel, at most 30,000].
     ///
     /// The number drawn is close to this, not equal to it.
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_POINTS))]

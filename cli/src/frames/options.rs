@@ -35,8 +35,8 @@ pub(crate) struct FramesOptions {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// How many dots the first frame has that is not blank, at most 4,000,000,000, and 50,000,000 that are refined
-    /// [default: as of `stipple`]. Others have as many more or fewer as they are darker or lighter.
+    /// How many dots the first frame has that is not blank, at most 4,000,000,000; 50,000,000 that are refined
+    /// or in PDF and NPY [default: as of `stipple`]. Others have as many more or fewer as they are darker or lighter.
     #[arg(short = 'n', long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_POINTS))]
     pub(crate) points: Option<u64>,
 

@@ -16,7 +16,8 @@ use twelvefold_stipple::wish::{Centers, Count, Wish};
 
 use super::options::FramesOptions;
 use super::output::Kind;
-use crate::args::{DotGain, MAX_REFINED};
+use crate::args::{DotGain, MAX_HELD};
+use crate::format::Format;
 use crate::report;
 use crate::stipple::tones::Importance;
 
@@ -29,7 +30,8 @@ pub(crate) struct Plan {
     pub(crate) dots: f64,
     /// On a pixel of importance 1.
     density: f64,
-    refine: bool,
+    /// Whether all dots of a frame are held in memory.
+    holds: bool,
 }
 
 /// What the frames' darkness becomes.
@@ -46,7 +48,7 @@ impl Plan {
     /// The plan by the first frame that is not blank.
     ///
     /// # Errors
-    /// [`Failure`] for more dots than can be refined.
+    /// [`Failure`] for more dots than can be held.
     pub(crate) fn new(
         options: &FramesOptions,
         first: &Picture,
@@ -83,8 +85,8 @@ impl Plan {
         let frames =
             Frames::new(first, wish).map_err(|error| report::of_input(&options.input, error))?;
         let layer = Layer { name: ink.svg(), color: ink };
-        let refine = options.refine > 0;
-        Ok(Self { frames, look, layer, dots: count, density, refine })
+        let holds = options.refine > 0 || matches!(kind, Kind::Files(Format::Pdf | Format::Npy));
+        Ok(Self { frames, look, layer, dots: count, density, holds })
     }
 
     /// Where a dot of a frame lies in the drawing.
@@ -101,16 +103,18 @@ impl Plan {
         Look { title, ..self.look.clone() }
     }
 
-    /// Fails if a frame gets more dots than can be refined.
+    /// Fails if a frame gets more dots than can be held.
     ///
     /// # Errors
     /// [`Failure`].
     pub(crate) fn check(&self, frame: &Picture) -> Result<(), Failure> {
         let dots = frame.total() * self.density;
-        if self.refine && dots > MAX_REFINED as f64 {
-            let reason =
-                format!("is for at most {MAX_REFINED} dots, and a frame has some {dots:.0}");
-            return Err(Failure::about("--refine", reason));
+        if self.holds && dots > MAX_HELD as f64 {
+            let reason = format!(
+                "at most {MAX_HELD} dots can be refined or go into a PDF or an NPY file, and a frame has \
+                 some {dots:.0}"
+            );
+            return Err(Failure::about("--points", reason));
         }
         Ok(())
     }

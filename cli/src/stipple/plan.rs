@@ -6,7 +6,7 @@ use std::fmt;
 use glam::DVec2;
 use twelvefold::Tables;
 
-use crate::args::{MAX_EXACT, MAX_POINTS, MAX_REFINED, StippleOptions};
+use crate::args::{MAX_EXACT, MAX_HELD, MAX_POINTS, StippleOptions};
 use crate::format::Format;
 use crate::page::options::Marks;
 use crate::page::options::Order;
@@ -78,6 +78,8 @@ pub(crate) enum PlanError {
     },
     /// More dots than can be refined.
     TooManyToRefine,
+    /// More dots than the format can hold in memory.
+    TooManyToHold,
     /// More dots than can be put into this order.
     TooManyToOrder {
         most: f64,
@@ -92,9 +94,10 @@ impl PlanError {
             Self::BestUnrefined => "--best",
             Self::UnitWithoutPage | Self::DotSizeOfPen | Self::DotBelowPen { .. } => "--dot-size",
             Self::RingWithoutPen => "--marks ring",
-            Self::TooMany { .. } | Self::TooManyToRefine | Self::TooManyToOrder { .. } => {
-                "--points"
-            }
+            Self::TooMany { .. }
+            | Self::TooManyToRefine
+            | Self::TooManyToHold
+            | Self::TooManyToOrder { .. } => "--points",
         }
     }
 }
@@ -121,8 +124,12 @@ impl fmt::Display for PlanError {
                 "{asked} dots do not fit on the page a pen's width apart; it can hold {capacity}"
             ),
             Self::TooManyToRefine => {
-                write!(out, "at most {MAX_REFINED} dots can be refined; see --refine 0")
+                write!(out, "at most {MAX_HELD} dots can be refined; see --refine 0")
             }
+            Self::TooManyToHold => write!(
+                out,
+                "at most {MAX_HELD} dots go into a PDF or an NPY file; choose CSV or SVG, or parts of NPY"
+            ),
             Self::TooManyToOrder { most } => write!(out, "at most {most} dots can be put in order"),
         }
     }
@@ -200,8 +207,12 @@ impl Plan {
             ranked: order == Order::Rank,
             tables: Tables::built_in(),
         };
-        if wish.refine > 0 && count > MAX_REFINED as f64 {
+        if options.part.is_none() && wish.refine > 0 && count > MAX_HELD as f64 {
             return Err(PlanError::TooManyToRefine);
+        }
+        let parts = options.part.map_or(1, |part| part.of) as f64;
+        if matches!(format, Format::Pdf | Format::Npy) && count / parts > MAX_HELD as f64 {
+            return Err(PlanError::TooManyToHold);
         }
         Ok(Self {
             look: look(options, format, sheet, mark, pixel / (count / black).sqrt(), &wish),

@@ -178,6 +178,10 @@ fn what_cannot_be_a_part_is_refused() {
         let output = stipple(&photograph(), &[&part[..], options].concat());
         assert_eq!(output.status.code(), Some(2), "{options:?}");
     }
+    for name in ["a.npy", "a.pdf"] {
+        let output = stipple(&photograph(), &["-n", "50000001", "-o", &out(name)]);
+        assert!(complaint_about("--points", &output).contains("choose CSV or SVG"));
+    }
     for part in ["0/2", "3/2", "2", "1/0", "a/b"] {
         let output = stipple(&photograph(), &["--part", part, "-o", &out("a.csv")]);
         assert_eq!(output.status.code(), Some(2), "{part}");
