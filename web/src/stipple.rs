@@ -5,7 +5,8 @@ use std::convert::Infallible;
 use js_sys::{Float32Array, Function, Promise};
 use twelvefold::refine::Refiner;
 use twelvefold_files::picture::Picture;
-use twelvefold_stipple::dots::{Centers, Count, Wish, unrefined};
+use twelvefold_stipple::dots::unrefined;
+use twelvefold_stipple::wish::{Centers, Count, Wish};
 use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
 use wasm_bindgen_futures::{JsFuture, future_to_promise};
 

@@ -6,11 +6,11 @@ use glam::DVec2;
 use js_sys::Error;
 use twelvefold_files::picture::Picture;
 use twelvefold_stipple::budget::default_dot_size;
-use twelvefold_stipple::dots::Wish;
 use twelvefold_stipple::drawing::{Csv, Drawing, Layer, Look, Piece, Png, Svg};
 use twelvefold_stipple::page::color::Color;
 use twelvefold_stipple::page::mark::Mark;
 use twelvefold_stipple::page::sheet::Sheet;
+use twelvefold_stipple::wish::Wish;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::photograph::{Tones, plain};
