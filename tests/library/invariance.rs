@@ -366,25 +366,26 @@ impl<I: Importance> Importance for Silent<I> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// Few pixels, so that most tiles know one value, and enough points that whole blocks are looked up.
     #[test]
     fn constant_ground_is_moved_as_any_other(
-        pixels in proptest::collection::vec(prop_oneof![Just(0.0f32), Just(0.02), Just(0.6), Just(1.0)], 9),
+        pixels in proptest::collection::vec(prop_oneof![Just(0.0f32), Just(0.5), Just(1.0)], 4),
         seed: u64,
-        count in prop_oneof![2_000.0..20_000.0f64, 70_000.0..120_000.0f64],
+        count in prop_oneof![2_000.0..20_000.0f64, 400_000.0..600_000.0f64],
         corners in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],
-        (seamless, bilinear) in any::<(bool, bool)>(),
+        (whole, seamless, bilinear) in any::<(bool, bool, bool)>(),
     ) {
-        let map = Pixels::new(3, 3, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
+        let map = Pixels::new(2, 2, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
         prop_assume!(map.mean() > 0.0);
         let domain = map.domain();
         let placement = match seamless {
             true => Placement::seamless(domain, seed).unwrap(),
             false => Placement::new(domain, seed),
         };
-        let (amount, clip) = (Amount::Points(count), rectangle_in(&domain, corners));
+        let clip = if whole { domain } else { rectangle_in(&domain, corners) };
+        let amount = Amount::Points(count);
         let (a, b) = if bilinear {
             let map = BilinearMap::new(map);
             (filled(&placement, &map, amount, clip), filled(&placement, &Silent(map.clone()), amount, clip))
@@ -403,7 +404,7 @@ fn filled<I: Importance>(
     clip: Domain,
 ) -> Vec<[u32; 2]> {
     let sampling = Sampling::new(placement, importance, amount).unwrap().relaxed().unwrap();
-    let mut points = vec![Vec2::ZERO; 150_000];
+    let mut points = vec![Vec2::ZERO; 700_000];
     let filled = sampling.clipped(clip).fill(&mut points).unwrap();
     assert!(filled.complete);
     let bits = points[..filled.written].iter().map(|at| at.to_array().map(f32::to_bits));
