@@ -366,7 +366,7 @@ impl<I: Importance> Importance for Silent<I> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
 
     /// Few pixels, so that most tiles know one value, and enough points that whole blocks are looked up.
     #[test]
