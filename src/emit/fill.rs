@@ -143,8 +143,8 @@ impl<I: Importance> Sampling<'_, I> {
     /// # Ok::<(), twelvefold::SamplingError>(())
     /// ```
     ///
-    /// The fastest way: ground of constant importance is copied from the tables block by block. For
-    /// relaxed points of a constant importance, from some 8,000 of them on, it takes 87 KB of stack.
+    /// The fastest way: ground of constant importance is copied from the tables block by block. For relaxed
+    /// points it takes 87 KB of stack, from some 8,000 of a constant importance on, or 65,536 of any.
     ///
     /// # Errors
     /// [`SamplingError`] when the importance breaks its own bounds, the walk its limits, or the precision
@@ -178,7 +178,7 @@ pub(super) fn fill<I: Importance, O: Output>(
     }
 }
 
-// A function of its own for the sake of its stack: `UniformDisplacements` is 87 KB.
+// A function of its own for the sake of its stack: `BlockVectors` are 87 KB.
 #[inline(never)]
 fn fill_relaxed<I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
@@ -186,7 +186,8 @@ fn fill_relaxed<I: Importance, O: Output>(
     output: O,
 ) -> Result<Filled, SamplingError> {
     let traversal = Traversal::<Ancestry>::new(sampling, shard);
-    match UniformDisplacements::of(sampling) {
+    let mut vectors = None;
+    match UniformDisplacements::of(sampling, &mut vectors) {
         Some(mut ground) => fill_from(sampling, traversal, Some(&mut ground), output),
         None => fill_from(sampling, traversal, None, output),
     }
@@ -195,7 +196,7 @@ fn fill_relaxed<I: Importance, O: Output>(
 fn fill_from<K: Mode, I: Importance, O: Output>(
     sampling: &Sampling<'_, I>,
     mut traversal: Traversal<K>,
-    mut ground: Option<&mut UniformDisplacements<'_>>,
+    mut ground: Option<&mut UniformDisplacements<'_, '_>>,
     mut output: O,
 ) -> Result<Filled, SamplingError> {
     let vectors = Simd::detect();
@@ -207,7 +208,7 @@ fn fill_from<K: Mode, I: Importance, O: Output>(
         || {
             while traversal.advance(sampling)? {
                 let steps = match &mut ground {
-                    Some(ground) => ground.steps(sampling.placement(), traversal.batch()),
+                    Some(ground) => ground.steps(sampling, traversal.batch()),
                     None => None,
                 };
                 let (output, written) = (&mut output, &mut written);

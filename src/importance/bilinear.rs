@@ -126,6 +126,10 @@ impl Importance for BilinearMap {
         }
     }
 
+    fn is_constant(&self, region: &Disc) -> bool {
+        !self.wraps && self.map.is_constant(&self.widened(region))
+    }
+
     /// Known over the map's own domain only: there each pixel's share is one pixel's area.
     fn integral(&self, domain: &Domain) -> Option<f64> {
         (*domain == self.map.domain()).then(|| self.map.mean() * domain.area())

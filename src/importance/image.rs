@@ -242,6 +242,12 @@ impl Importance for ImageMap {
         }
     }
 
+    #[inline]
+    fn is_constant(&self, region: &Disc) -> bool {
+        let (texels, low, high) = self.under(region);
+        texels.max(low, high) <= texels.min(low, high)
+    }
+
     fn integral(&self, domain: &Domain) -> Option<f64> {
         if *domain == self.domain {
             return Some(self.mean() * domain.area());

@@ -115,6 +115,18 @@ impl<'a> DisplacementTable<'a> {
         [x, y]
     }
 
+    /// The same where all read the same phase, without detail, the classes of all over G generations being
+    /// `classes(G)`.
+    #[inline(always)]
+    pub(crate) fn vectors_at(
+        &self,
+        len: usize,
+        reading: &Reading,
+        classes: impl Fn(u32) -> [u32; RUN],
+    ) -> [[f32; RUN]; 2] {
+        self.smooth.vectors_at(len, reading.smooth, &classes)
+    }
+
     /// The most generations that a class is asked for at the phase of a reading.
     pub(crate) fn generations(&self, reading: &Reading) -> u32 {
         let rough = match (&self.rough, reading.rough) {
@@ -150,6 +162,24 @@ struct Phase {
     first: usize,
     /// How far from the first to the next, in [0, 1).
     share: f32,
+}
+
+/// The first `len` vectors between stored ones, in units of their scales, and the parts of the way.
+#[inline(always)]
+fn mixed(
+    len: usize,
+    (a, a_scale): (&[[u8; 2]; RUN], &[f32; RUN]),
+    (b, b_scale): (&[[u8; 2]; RUN], &[f32; RUN]),
+    shares: &[f32; RUN],
+) -> [[f32; RUN]; 2] {
+    let [mut x, mut y] = [[0.0; RUN]; 2];
+    for i in 0..len {
+        let mix = |a: f32, b: f32| a + (b - a) * shares[i];
+        let [ax, ay] = a[i].map(|v| f32::from(v as i8) * a_scale[i]);
+        let [bx, by] = b[i].map(|v| f32::from(v as i8) * b_scale[i]);
+        (x[i], y[i]) = (mix(ax, bx), mix(ay, by));
+    }
+    [x, y]
 }
 
 /// One layer: slots in ascending order of τ.
@@ -294,12 +324,66 @@ impl<'a> LayerTable<'a> {
                 }
             }
         }
+        mixed(len, (&a, &a_scale), (&b, &b_scale), &shares)
+    }
+
+    /// The same where all read the same phase.
+    #[inline(always)]
+    fn vectors_at(
+        &self,
+        len: usize,
+        phase: Option<Phase>,
+        classes: &impl Fn(u32) -> [u32; RUN],
+    ) -> [[f32; RUN]; 2] {
+        let Some(Phase { first, share }) = phase else { return [[0.0; RUN]; 2] };
+        let len = len.min(RUN);
+        let (before, after) = (self.record(first), self.record(first + 1));
+        let numbers = classes(before.generations);
+        let (a, few) = self.units(&before, &numbers, len);
+        let later = match after.generations == before.generations {
+            true => numbers,
+            false => classes(after.generations),
+        };
+        let (b, fewer) = self.units(&after, &later, len);
+        if first == 0 || few || fewer {
+            return self.vectors_of_later(len, (first, share), classes);
+        }
+        mixed(len, (&a, &[before.scale; RUN]), (&b, &[after.scale; RUN]), &[share; RUN])
+    }
+
+    /// What a slot holds of these classes, and whether it lacks one.
+    #[inline(always)]
+    fn units(
+        &self,
+        record: &SlotRecord,
+        classes: &[u32; RUN],
+        len: usize,
+    ) -> ([[u8; 2]; RUN], bool) {
+        let held = self.vectors.get(record.start..).unwrap_or_default();
+        let held = held.get(..record.count as usize).unwrap_or(held);
+        let mut units = [[0u8; 2]; RUN];
+        let mut lacks = false;
+        for (units, class) in units[..len].iter_mut().zip(classes) {
+            let found = held.get(*class as usize);
+            lacks |= found.is_none();
+            *units = found.copied().unwrap_or_default();
+        }
+        (units, lacks)
+    }
+
+    /// The same where some of the classes are held by later slots only, or there is none before the phase.
+    #[cold]
+    #[inline(never)]
+    fn vectors_of_later(
+        &self,
+        len: usize,
+        (first, share): (usize, f32),
+        classes: &impl Fn(u32) -> [u32; RUN],
+    ) -> [[f32; RUN]; 2] {
         let [mut x, mut y] = [[0.0; RUN]; 2];
-        for i in 0..len {
-            let mix = |a: f32, b: f32| a + (b - a) * shares[i];
-            let [ax, ay] = a[i].map(|v| f32::from(v as i8) * a_scale[i]);
-            let [bx, by] = b[i].map(|v| f32::from(v as i8) * b_scale[i]);
-            (x[i], y[i]) = (mix(ax, bx), mix(ay, by));
+        let phase = Some(Phase { first, share });
+        for (i, (x, y)) in x.iter_mut().zip(&mut y).enumerate().take(len) {
+            [*x, *y] = self.vector(phase, &|generations| classes(generations)[i]);
         }
         [x, y]
     }

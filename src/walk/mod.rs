@@ -7,6 +7,7 @@ pub(crate) mod context;
 mod count;
 pub(crate) mod displaced;
 mod frontier;
+mod ground;
 pub(crate) mod mode;
 mod open;
 mod relaxed;

@@ -4,6 +4,7 @@ use super::ancestry::Ancestry;
 use super::candidates::Candidates;
 use super::chunk::Chunk;
 use super::context::Context;
+use super::ground::Ground;
 use super::relaxed;
 use crate::error::SamplingError;
 use crate::importance::Importance;
@@ -98,6 +99,12 @@ impl Mode for Ancestry {
     ) -> Result<usize, SamplingError> {
         match walk.sampling.displacements() {
             Some(displacements) => {
+                if batch.constant
+                    && let Some(ground) = Ground::of(walk.sampling, displacements, batch)
+                {
+                    let ground = (&ground, displacements);
+                    return Ok(chunk.select_constant::<I, P>(walk, ground, batch, self, start));
+                }
                 chunk.select_relaxed::<I, P>(walk, displacements, batch, self, start)
             }
             // Ancestry is asked for only where there are offsets.

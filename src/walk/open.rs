@@ -46,7 +46,8 @@ impl<K: Mode> OpenTile<K> {
         mean_bound: 0.0,
     };
 
-    /// Opens `node`, of whose descendants those with a rank under `node_limit` can be accepted.
+    /// Opens `node`, of whose descendants those with a rank under `node_limit` can be accepted; where they are, the
+    /// importance is `node_value`, if that is known.
     ///
     /// A child's own center belongs to `node`'s batch. What is left below a level-(m + 1) child with
     /// rank r has ranks from N_{m+1} + r on, and its points are born at most `levels` − 1 levels below
@@ -56,10 +57,10 @@ impl<K: Mode> OpenTile<K> {
         &mut self,
         sampling: &Sampling<'_, I>,
         clip: &Clip,
-        node: &Node,
-        ancestry: &K,
+        (node, ancestry): (&Node, &K),
         node_limit: u64,
         node_inside: bool,
+        node_value: Option<f64>,
     ) -> Result<(), SamplingError> {
         (self.node, self.ancestry) = (*node, *ancestry);
         (self.pending, self.inside, self.constant) = (0, 0, 0);
@@ -100,14 +101,10 @@ impl<K: Mode> OpenTile<K> {
         let mut bounds = [0.0; MAX_CHILDREN];
         let (x, y, bounds) = (&x[..touching], &y[..touching], &mut bounds[..touching]);
         importance.upper_bounds(corner, x, y, radius, bounds);
-        // Where there is one: the children that it leaves alone.
-        let mut clear = 0u16;
         if let Some(seam) = &seam {
             for (i, bound) in bounds.iter_mut().enumerate() {
                 let region = Disc { center: corner + DVec2::new(x[i], y[i]), radius };
-                if seam.is_clear_of(&region) {
-                    clear |= 1 << i;
-                } else {
+                if !seam.is_clear_of(&region) {
                     *bound = seam.upper_bound(importance, &region);
                 }
             }
@@ -135,10 +132,8 @@ impl<K: Mode> OpenTile<K> {
                 self.pending |= bit;
                 let region_of_points = Disc { radius: wide, ..region };
                 self.inside |= if node_inside || clip.holds(&region_of_points) { bit } else { 0 };
-                let constant = match &seam {
-                    Some(seam) if clear & 1 << i == 0 => seam.is_constant(importance),
-                    _ => importance.is_constant(&region),
-                };
+                // What is constant in the tile is so in its part of each child's disc.
+                let constant = node_value == Some(*bound);
                 self.constant |= if constant { bit } else { 0 };
             }
             (self.limits[digit], self.bounds[digit]) = (limit, *bound);

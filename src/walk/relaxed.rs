@@ -24,6 +24,7 @@ use crate::tables::displacement::RUN;
 use crate::tiling::MAX_LEVEL;
 use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tree::frame::EdgeFrame;
+use crate::tree::node::Node;
 
 /// How far, in units, points born at `level` or later may be moved: a vector is at most
 /// [`longest`](DisplacementTable::longest) edges of the point's level long, which is not above the
@@ -34,6 +35,16 @@ pub(crate) fn margin(sampling: &Sampling<'_, impl Importance>, level: u8) -> f64
     let longest = sampling.displacements().map_or(0.0, DisplacementTable::longest);
     2.0 * sampling.placement().half_edge(level).length() * longest
         + sampling.importance().longest_constraint()
+}
+
+/// Whether points of a tile, of this level and deeper ones, may go anywhere: the importance is nowhere 0 where
+/// they can.
+#[inline(always)]
+pub(crate) fn is_free(sampling: &Sampling<'_, impl Importance>, node: &Node, level: u8) -> bool {
+    let (placement, importance) = (sampling.placement(), sampling.importance());
+    let center = placement.domain().min() + placement.center(node);
+    let radius = placement.reach(node.level, usize::MAX) + margin(sampling, level);
+    importance.longest_constraint() <= 0.0 && importance.lower_bound(&Disc { center, radius }) > 0.0
 }
 
 /// The domain's least corner and its greatest place: where a border point that moves in finds its
@@ -52,11 +63,11 @@ pub(crate) fn reaches(center: DVec2, moved: DVec2, settled: DVec2) -> bool {
 }
 
 /// A chunk's points on their way.
-struct Displacer<'w, 'a, I> {
+pub(super) struct Displacer<'w, 'a, I> {
     sampling: &'w Sampling<'a, I>,
-    displacements: &'w DisplacementTable<'a>,
-    batch: &'w Candidates,
-    ancestry: &'w Ancestry,
+    pub(super) displacements: &'w DisplacementTable<'a>,
+    pub(super) batch: &'w Candidates,
+    pub(super) ancestry: &'w Ancestry,
     /// Where importance is read.
     low: DVec2,
     high: DVec2,
@@ -83,9 +94,8 @@ impl<S: Scalar> Chunk<S> {
         // Sure ones too read the importance: their phase depends on it.
         let sure = start < batch.sure;
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
-        let (low, high) = inner_corners(sampling.placement());
-        let wraps = !batch.inside && sampling.placement().is_seamless();
-        let mover = Displacer { sampling, displacements, batch, ancestry, low, high, wraps };
+        let mover = Displacer::new(sampling, displacements, batch, ancestry);
+        let wraps = mover.wraps;
         if batch.inside {
             self.read_values(sampling);
         } else if wraps {
@@ -156,7 +166,26 @@ impl<S: Scalar> Chunk<S> {
     }
 }
 
-impl<I: Importance> Displacer<'_, '_, I> {
+impl<'w, 'a, I: Importance> Displacer<'w, 'a, I> {
+    #[inline(always)]
+    pub(super) fn new(
+        sampling: &'w Sampling<'a, I>,
+        displacements: &'w DisplacementTable<'a>,
+        batch: &'w Candidates,
+        ancestry: &'w Ancestry,
+    ) -> Self {
+        let (low, high) = inner_corners(sampling.placement());
+        let wraps = !batch.inside && sampling.placement().is_seamless();
+        Self { sampling, displacements, batch, ancestry, low, high, wraps }
+    }
+
+    /// Whether the batch's points, if they are of this level and deeper ones, may go anywhere.
+    #[inline(always)]
+    pub(super) fn may_go_anywhere(&self, level: u8) -> bool {
+        self.sampling.unconstrained()
+            || (!self.wraps && is_free(self.sampling, &self.batch.node, level))
+    }
+
     /// The place of the domain nearest to a center.
     #[inline(always)]
     fn nearest<S: Scalar>(&self, x: S, y: S) -> DVec2 {
@@ -189,22 +218,10 @@ impl<I: Importance> Displacer<'_, '_, I> {
         };
         let frames = [frame(0), frame(1), frame(2)];
         let len = chunk.len.min(CHUNK);
-        let free = self.sampling.unconstrained() || self.nothing_constrains();
+        let free = self.may_go_anywhere(self.batch.node.level);
         for start in (0..len).step_by(RUN) {
             self.move_run(chunk, start..len.min(start + RUN), &formulas, &frames, free);
         }
-    }
-
-    /// Whether points of the batch may go anywhere: the importance is nowhere 0 where they can.
-    #[inline(always)]
-    fn nothing_constrains(&self) -> bool {
-        let (sampling, node) = (self.sampling, &self.batch.node);
-        let (placement, importance) = (sampling.placement(), sampling.importance());
-        let center = placement.domain().min() + placement.center(node);
-        let radius = placement.reach(node.level, usize::MAX) + margin(sampling, node.level);
-        !self.wraps
-            && importance.longest_constraint() <= 0.0
-            && importance.lower_bound(&Disc { center, radius }) > 0.0
     }
 
     /// Moves some of a packed chunk's points, [`RUN`] at the most: first the phases of those that are
@@ -292,15 +309,28 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 [dx[k], dy[k]] = self.step(chunk, run.start + k);
             }
         }
+        self.move_by(chunk, run, &dx, &dy, free);
+    }
+
+    /// Moves points by steps, or to where they may go.
+    #[inline(always)]
+    pub(super) fn move_by<S: Scalar>(
+        &self,
+        chunk: &mut Chunk<S>,
+        run: Range<usize>,
+        dx: &[S; RUN],
+        dy: &[S; RUN],
+        free: bool,
+    ) {
         if free {
             let columns = chunk.x[run.clone()].iter_mut().zip(&mut chunk.y[run]);
-            for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(&dy)) {
+            for ((x, y), (dx, dy)) in columns.zip(dx.iter().zip(dy)) {
                 (*x, *y) = (*x + *dx, *y + *dy);
             }
         } else if self.wraps {
-            self.constrain_across(chunk, run, &dx, &dy);
+            self.constrain_across(chunk, run, dx, dy);
         } else {
-            self.constrain(chunk, run, &dx, &dy);
+            self.constrain(chunk, run, dx, dy);
         }
     }
 

@@ -297,12 +297,20 @@ impl<K: Mode> Traversal<K> {
             } else {
                 count_below_at_most(numbering, node, block, levels, limit)
             };
+            let (mut end, mut constant) = (end, constant);
             let sure = if constant {
                 end
             } else if end < WORTH_A_BOUND || (!inside && (K::RELAXED || placement.is_seamless())) {
                 0
             } else {
-                sure_below(sampling, node, *bound, levels).min(end)
+                let (lower, region) = lower_bound(sampling, node, levels);
+                constant =
+                    K::RELAXED && lower >= *bound && sampling.importance().is_constant(&region);
+                // A broken promise admits no more than the upper bound; NaN, nothing.
+                let lower = if lower > *bound { *bound } else { lower };
+                let sure = sure_below(sampling, node, lower, levels).min(end);
+                end = if constant { sure } else { end };
+                sure
             };
             let few = match (constant, inside) {
                 // Whole blocks, whose vectors are looked up together.
@@ -313,12 +321,14 @@ impl<K: Mode> Traversal<K> {
             if levels == 1 || few {
                 let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth));
                 (self.batch.end, self.batch.sure) = (end, sure);
+                self.batch.constant = constant;
                 return Ok(taken);
             }
         }
         // Never full: each open tile is one level below the one before.
         let Some(open) = self.open.get_mut(self.depth) else { return Ok(false) };
-        open.expand(sampling, &self.clip, node, &self.ancestry, limit, *inside)?;
+        let value = constant.then_some(*bound);
+        open.expand(sampling, &self.clip, (node, &self.ancestry), limit, *inside, value)?;
         // Deeper levels are wanted, so that all children's centers are.
         let end = block.born_before(2);
         let taken = shard.is_none_or(|shard| shard.take(end as u64, self.depth + 1));
@@ -328,20 +338,29 @@ impl<K: Mode> Traversal<K> {
     }
 }
 
-/// How many of the entries born at most `levels` levels below a tile are accepted whatever the
-/// importance is there, between its lower bound and the upper `bound`.
-fn sure_below<I: Importance>(
-    sampling: &Sampling<'_, I>,
+/// A lower bound of the importance where the descendants of a tile are that are born at most `levels` levels
+/// below it, and where that is.
+#[inline(always)]
+fn lower_bound(
+    sampling: &Sampling<'_, impl Importance>,
     node: &Node,
-    bound: f64,
     levels: usize,
-) -> usize {
+) -> (f64, Disc) {
     let placement = sampling.placement();
     let center = placement.domain().min() + placement.center(node);
     let region = Disc { center, radius: placement.reach(node.level, levels) };
-    let lower = sampling.importance().lower_bound(&region);
-    // A broken promise admits no more than the upper bound; NaN, nothing.
-    let limit = sampling.scale().limit(if lower > bound { bound } else { lower });
+    (sampling.importance().lower_bound(&region), region)
+}
+
+/// How many of those are accepted whatever the importance is there, from `lower` on.
+fn sure_below<I: Importance>(
+    sampling: &Sampling<'_, I>,
+    node: &Node,
+    lower: f64,
+    levels: usize,
+) -> usize {
+    let placement = sampling.placement();
+    let limit = sampling.scale().limit(lower);
     if limit <= node.rank {
         return 0;
     }

@@ -1,11 +1,13 @@
 //! Constant ground, relaxed: every point reads the same phase, so that a vector depends on its class
-//! alone. The vectors of whole blocks are looked up once a walk, in the order of their entries, and then
-//! added to the fixed centers as fast as these are read.
+//! alone. The vectors of whole blocks are looked up once, in the order of their entries, and then
+//! added to the fixed centers as fast as these are read: for a constant importance, and for one that has many
+//! points of the same in a row.
 
 use super::ancestry::ClassFormula;
 use super::candidates::Candidates;
 use super::count::count_below;
 use super::displaced::Displaced;
+use super::relaxed::is_free;
 use crate::importance::Importance;
 use crate::placement::{FIRST_RELAXED_LEVEL, FRONTIER_LEVEL, Placement};
 use crate::position::Scalar;
@@ -27,68 +29,122 @@ const ENTRIES: usize = 2716;
 /// costs less than looking up each point's.
 const WORTHWHILE: f64 = 8192.0;
 
-/// The vectors of constant ground.
-pub(crate) struct UniformDisplacements<'a> {
+/// The same where only parts of the ground may be constant: asking for each tile costs a few percent of 10,000 points
+/// of noise, and nothing that can be measured of 65,536.
+const WORTHWHILE_IN_PARTS: f64 = 65_536.0;
+
+/// By type, coordinate and entry: the vector in the frame of the block's tile, three levels above the
+/// point, in edges of the point's level.
+pub(crate) type BlockVectors = [[[f32; ENTRIES]; 2]; 4];
+
+/// The vectors of the constant ground that the walk is on.
+pub(crate) struct UniformDisplacements<'v, 'a> {
     displacements: &'a DisplacementTable<'a>,
+    /// The importance there, and what is known of it if it has tables.
+    value: f64,
+    ground: Option<Ground>,
+    /// Another one, and how many points in a row were on it.
+    next: (f64, usize),
+    vectors: &'v mut Option<BlockVectors>,
+    known: [bool; 4],
+}
+
+/// What follows from a constant importance.
+#[derive(Clone, Copy)]
+struct Ground {
     reading: Reading,
     /// The level of all points.
     level: u8,
     /// Ranks below this are points.
     limit: u64,
-    /// By type, coordinate and entry: the vector in the frame of the block's tile, three levels above
-    /// the point, in edges of the point's level.
-    vectors: [[[f32; ENTRIES]; 2]; 4],
-    known: [bool; 4],
 }
 
-impl<'a> UniformDisplacements<'a> {
-    /// `None` where the importance is not constant, or where this is not worth it.
-    pub(crate) fn of(sampling: &Sampling<'a, impl Importance>) -> Option<Self> {
-        let placement = sampling.placement();
-        let displacements = sampling.displacements()?;
-        let region = placement.domain().disc();
-        if !sampling.importance().is_constant(&region)
-            || placement.tables().depth() < LEVELS
-            || sampling.expected_points().is_none_or(|points| points < WORTHWHILE)
-        {
-            return None;
-        }
-        let bound = sampling.importance().upper_bound(&region);
-        let threshold = sampling.scale().threshold(bound);
-        let numbering = placement.numbering();
+impl Ground {
+    /// `None` where blocks do not tell the vectors.
+    fn of(
+        sampling: &Sampling<'_, impl Importance>,
+        displacements: &DisplacementTable<'_>,
+        value: f64,
+    ) -> Option<Self> {
+        let threshold = sampling.scale().threshold(value);
+        let numbering = sampling.placement().numbering();
         let level = numbering.counts().level_of(threshold);
-        let tau = threshold * numbering.reciprocal(usize::from(level) - 1);
+        let below = level >= FIRST_RELAXED_LEVEL.max(FRONTIER_LEVEL + LEVELS);
+        let tau = threshold * numbering.reciprocal(usize::from(level).saturating_sub(1));
         let reading = displacements.reading(tau.clamp(1.0, DELTA), 0.0);
         // Classes over more generations are not told by the block alone.
         let in_block = displacements.generations(&reading) <= u32::from(LEVELS);
-        let below = level >= FIRST_RELAXED_LEVEL.max(FRONTIER_LEVEL + LEVELS);
-        (in_block && below).then_some(Self {
-            displacements,
-            reading,
-            level,
-            limit: sampling.scale().limit(bound),
-            vectors: [[[0.0; ENTRIES]; 2]; 4],
-            known: [false; 4],
-        })
+        let limit = sampling.scale().limit(value);
+        (below && in_block).then_some(Self { reading, level, limit })
+    }
+}
+
+impl<'v, 'a> UniformDisplacements<'v, 'a> {
+    /// With room for the vectors, which is written to once they are needed. `None` where this is not worth it.
+    pub(crate) fn of(
+        sampling: &Sampling<'a, impl Importance>,
+        vectors: &'v mut Option<BlockVectors>,
+    ) -> Option<Self> {
+        let placement = sampling.placement();
+        let displacements = sampling.displacements()?;
+        let region = placement.domain().disc();
+        let importance = sampling.importance();
+        let constant = importance.is_constant(&region);
+        let least = if constant { WORTHWHILE } else { WORTHWHILE_IN_PARTS };
+        let worthwhile = sampling.expected_points().is_some_and(|points| points >= least);
+        if placement.tables().depth() < LEVELS || !worthwhile {
+            return None;
+        }
+        let (ground, next) = (None, (0.0, 0));
+        let mut ground =
+            Self { displacements, value: 0.0, ground, next, vectors, known: [false; 4] };
+        if constant {
+            ground.turn_to(sampling, importance.upper_bound(&region));
+        }
+        Some(ground)
     }
 
-    /// The steps of a batch's entries; `None` for a batch of other tiles' centers.
+    #[cold]
+    #[inline(never)]
+    fn turn_to(&mut self, sampling: &Sampling<'_, impl Importance>, value: f64) {
+        self.value = value;
+        self.ground = Ground::of(sampling, self.displacements, value);
+        self.known = [false; 4];
+    }
+
+    /// The steps of a batch's entries; `None` for a batch of other tiles' centers, where the ground is not
+    /// constant or not known well enough, and where points may not go anywhere.
     #[inline(always)]
     pub(crate) fn steps<S: Scalar>(
         &mut self,
-        placement: &Placement<'_>,
+        sampling: &Sampling<'_, impl Importance>,
         batch: &Candidates,
     ) -> Option<Displaced<'_, S>> {
         let node = &batch.node;
-        let is_block = node.level + LEVELS == self.level && batch.start > 0;
-        if !is_block || batch.end > ENTRIES {
+        if !batch.constant || batch.start == 0 {
+            return None;
+        }
+        if batch.bound != self.value {
+            let passed = if self.next.0 == batch.bound { self.next.1 } else { 0 };
+            self.next = (batch.bound, passed + batch.end);
+            if (self.next.1 as f64) < WORTHWHILE {
+                return None;
+            }
+            self.turn_to(sampling, batch.bound);
+        }
+        let level = self.ground?.level;
+        if node.level + LEVELS != level || batch.end > ENTRIES {
+            return None;
+        }
+        let placement = sampling.placement();
+        if !sampling.unconstrained() && !is_free(sampling, node, level) {
             return None;
         }
         if !self.known[node.kind.index()] {
             self.look_up(placement, node.kind);
         }
-        let [x, y] = &self.vectors[node.kind.index()];
-        let frame = EdgeFrame::new(placement.turned_edge(self.level, node.rotation));
+        let [x, y] = &self.vectors.as_ref()?[node.kind.index()];
+        let frame = EdgeFrame::new(placement.turned_edge(level, node.rotation));
         Some(Displaced { x: &x[..batch.end], y: &y[..batch.end], frame })
     }
 
@@ -96,13 +152,15 @@ impl<'a> UniformDisplacements<'a> {
     #[cold]
     #[inline(never)]
     fn look_up(&mut self, placement: &Placement<'_>, kind: TileType) {
+        let Some(Ground { reading, level, limit }) = self.ground else { return };
         let block = placement.tables().block(kind);
         let formula = ClassFormula::of_block(kind.index());
         let turns: [Rotation; 12] = core::array::from_fn(|turn| Rotation::new(turn as u8));
         // The tile of least rank has the most.
-        let first = Node { kind, level: self.level - LEVELS, ..Node::root() };
-        let end = count_below(placement.numbering(), &first, block, LEVELS.into(), self.limit);
-        let [x, y] = &mut self.vectors[kind.index()];
+        let first = Node { kind, level: level - LEVELS, ..Node::root() };
+        let end = count_below(placement.numbering(), &first, block, LEVELS.into(), limit);
+        let vectors = self.vectors.get_or_insert_with(|| [[[0.0; ENTRIES]; 2]; 4]);
+        let [x, y] = &mut vectors[kind.index()];
         let columns = x.iter_mut().zip(y);
         for ((i, (turn, class)), (x, y)) in block.relax_keys().enumerate().take(end).zip(columns) {
             let coefficients = block.rank_coefficients(i);
@@ -110,7 +168,7 @@ impl<'a> UniformDisplacements<'a> {
                 3.. => formula.class(generations as usize, coefficients),
                 _ => class.into(),
             };
-            let in_grandparent = self.displacements.vector(&self.reading, class);
+            let in_grandparent = self.displacements.vector(&reading, class);
             [*x, *y] = turns[usize::from(turn) % 12].rotated(in_grandparent);
         }
         self.known[kind.index()] = true;

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use crate::common::every_depth;
 use twelvefold::{
-    Amount, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Pixels, Placement,
-    Position, Probed, Sample, Sampling, SamplingError, Scalar,
+    Amount, BilinearMap, Constant, Disc, Domain, ImageMap, Importance, InvalidPixels, Pixels,
+    Placement, Position, Probed, Sample, Sampling, SamplingError, Scalar,
 };
 
 /// Rank and the bits of the coordinates.
@@ -338,4 +338,77 @@ fn lower_bounds_save_tests_and_change_nothing_else() {
             }
         }
     }
+}
+
+/// An importance that does not say where it is constant.
+struct Silent<I>(I);
+
+impl<I: Importance> Importance for Silent<I> {
+    fn value(&self, at: DVec2) -> f64 {
+        self.0.value(at)
+    }
+
+    fn upper_bound(&self, region: &Disc) -> f64 {
+        self.0.upper_bound(region)
+    }
+
+    fn lower_bound(&self, region: &Disc) -> f64 {
+        self.0.lower_bound(region)
+    }
+
+    fn integral(&self, domain: &Domain) -> Option<f64> {
+        self.0.integral(domain)
+    }
+
+    fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
+        self.0.constrain(centers, needed, moved);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Few pixels, so that most tiles know one value, and enough points that whole blocks are looked up.
+    #[test]
+    fn constant_ground_is_moved_as_any_other(
+        pixels in proptest::collection::vec(prop_oneof![Just(0.0f32), Just(0.5), Just(1.0)], 4),
+        seed: u64,
+        count in prop_oneof![2_000.0..20_000.0f64, 400_000.0..600_000.0f64],
+        corners in [0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64, 0.0..1.0f64],
+        (whole, seamless, bilinear) in any::<(bool, bool, bool)>(),
+    ) {
+        let map = Pixels::new(2, 2, pixels, InvalidPixels::Reject).and_then(ImageMap::new).unwrap();
+        prop_assume!(map.mean() > 0.0);
+        let domain = map.domain();
+        let placement = match seamless {
+            true => Placement::seamless(domain, seed).unwrap(),
+            false => Placement::new(domain, seed),
+        };
+        let clip = if whole { domain } else { rectangle_in(&domain, corners) };
+        let amount = Amount::Points(count);
+        let (a, b) = if bilinear {
+            let map = BilinearMap::new(map);
+            (filled(&placement, &map, amount, clip), filled(&placement, &Silent(map.clone()), amount, clip))
+        } else {
+            (filled(&placement, &map, amount, clip), filled(&placement, &Silent(map.clone()), amount, clip))
+        };
+        prop_assert!(a == b);
+    }
+}
+
+/// The bits of all relaxed positions in single precision, sorted.
+fn filled<I: Importance>(
+    placement: &Placement<'_>,
+    importance: &I,
+    amount: Amount,
+    clip: Domain,
+) -> Vec<[u32; 2]> {
+    let sampling = Sampling::new(placement, importance, amount).unwrap().relaxed().unwrap();
+    let mut points = vec![Vec2::ZERO; 700_000];
+    let filled = sampling.clipped(clip).fill(&mut points).unwrap();
+    assert!(filled.complete);
+    let bits = points[..filled.written].iter().map(|at| at.to_array().map(f32::to_bits));
+    let mut bits: Vec<_> = bits.collect();
+    bits.sort_unstable();
+    bits
 }
