@@ -97,8 +97,7 @@ pub trait Importance {
     /// `centers`, is accepted where the importance is above `needed`, and would be moved to `moved`; both are
     /// places of the domain. `moved` is left with where it goes: never where the importance is 0; by default,
     /// back towards the center until it is not. Importance with hard edges keeps points on their side.
-    /// No farther from the center than `moved` was, but for
-    /// [`longest_constraint`](Self::longest_constraint). The result for a point depends on that point alone.
+    /// No farther from the center than `moved` was. The result for a point depends on that point alone.
     #[inline]
     fn constrain(&self, centers: [&[f64]; 2], needed: &[f64], moved: [&mut [f64]; 2]) {
         let _ = needed;
@@ -107,10 +106,10 @@ pub trait Importance {
         });
     }
 
-    /// By how much, in units, [`constrain`](Self::constrain) takes a point farther from its center than
-    /// relaxation moved it, at most. 0: it is asked only where [`lower_bound`](Self::lower_bound) is 0.
-    fn longest_constraint(&self) -> f64 {
-        0.0
+    /// Whether [`constrain`](Self::constrain) has to be asked of every point; if not, it is asked only where
+    /// [`lower_bound`](Self::lower_bound) is 0.
+    fn constrains_everywhere(&self) -> bool {
+        false
     }
 
     /// Whether [`upper_bound`](Self::upper_bound) is a promise, as it must be unless the importance says
@@ -196,8 +195,8 @@ macro_rules! forward {
         }
 
         #[inline]
-        fn longest_constraint(&self) -> f64 {
-            (**self).longest_constraint()
+        fn constrains_everywhere(&self) -> bool {
+            (**self).constrains_everywhere()
         }
 
         fn bounds_hold(&self) -> bool {

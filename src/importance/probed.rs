@@ -72,8 +72,8 @@ impl<I: Importance> Importance for Probed<I> {
         self.importance.constrain(centers, needed, moved);
     }
 
-    fn longest_constraint(&self) -> f64 {
-        self.importance.longest_constraint()
+    fn constrains_everywhere(&self) -> bool {
+        self.importance.constrains_everywhere()
     }
 
     fn bounds_hold(&self) -> bool {

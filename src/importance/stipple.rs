@@ -313,9 +313,9 @@ impl Importance for StippleMap {
         });
     }
 
-    fn longest_constraint(&self) -> f64 {
-        // None goes farther; but each is asked about, wherever it is.
-        f64::MIN_POSITIVE
+    fn constrains_everywhere(&self) -> bool {
+        // Edges part grounds that are both above 0.
+        true
     }
 }
 

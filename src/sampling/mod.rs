@@ -165,7 +165,7 @@ impl<'a, I: Importance> Sampling<'a, I> {
         match self.placement.tables().displacements() {
             Some(displacements) => {
                 let domain = self.placement.domain().disc();
-                let unconstrained = self.importance.longest_constraint() <= 0.0
+                let unconstrained = !self.importance.constrains_everywhere()
                     && self.importance.lower_bound(&domain) > 0.0;
                 Ok(Self { displacements: Some(displacements), unconstrained, ..self })
             }

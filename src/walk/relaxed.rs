@@ -34,7 +34,6 @@ pub(crate) fn margin(sampling: &Sampling<'_, impl Importance>, level: u8) -> f64
     let level = level.clamp(FIRST_RELAXED_LEVEL, MAX_LEVEL as u8);
     let longest = sampling.displacements().map_or(0.0, DisplacementTable::longest);
     2.0 * sampling.placement().half_edge(level).length() * longest
-        + sampling.importance().longest_constraint()
 }
 
 /// Whether points of a tile, of this level and deeper ones, may go anywhere: the importance is nowhere 0 where
@@ -44,7 +43,7 @@ pub(crate) fn is_free(sampling: &Sampling<'_, impl Importance>, node: &Node, lev
     let (placement, importance) = (sampling.placement(), sampling.importance());
     let center = placement.domain().min() + placement.center(node);
     let radius = placement.reach(node.level, usize::MAX) + margin(sampling, level);
-    importance.longest_constraint() <= 0.0 && importance.lower_bound(&Disc { center, radius }) > 0.0
+    !importance.constrains_everywhere() && importance.lower_bound(&Disc { center, radius }) > 0.0
 }
 
 /// The domain's least corner and its greatest place: where a border point that moves in finds its

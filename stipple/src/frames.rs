@@ -6,8 +6,6 @@
 //!
 //! [`Cell::rows`]: twelvefold::Cell::rows
 
-use std::ops::Range;
-
 use twelvefold::{MapError, Mosaic, Pixels};
 use twelvefold_files::picture::Picture;
 
@@ -70,15 +68,7 @@ impl Frames {
         mut take: impl FnMut(Step) -> Result<(), E>,
     ) -> Result<(), DotsError<E>> {
         let several = self.mosaic.cells().len() > 1;
-        let read = |columns: Range<usize>, rows: Range<usize>| {
-            let mut window = Vec::new();
-            let len = columns.len() * rows.len();
-            window.try_reserve_exact(len).map_err(|_| DotsError::Memory(len))?;
-            for y in rows {
-                window.extend_from_slice(&frame.importance[y * frame.width..][columns.clone()]);
-            }
-            Ok(window)
-        };
+        let read = |columns, rows| raw::window(&frame.importance, frame.width, columns, rows);
         raw::cells(self.mosaic.cells(), self.wish, read, |step, _| match step {
             // As a single picture is drawn.
             Step::Cut if !several => Ok(()),

@@ -5,8 +5,8 @@ use std::ops::Range;
 use glam::DVec2;
 use twelvefold::estimate::{exactly, exactly_relaxed};
 use twelvefold::{
-    Amount, Cell, ImageMap, Importance, InvalidPixels, Limits, Mosaic, Pixels, Placement, Sample,
-    Sampling, StippleMap,
+    Amount, Cell, ImageMap, Importance, InvalidPixels, Limits, MapError, Mosaic, Pixels, Placement,
+    Sample, Sampling, StippleMap,
 };
 use twelvefold_files::picture::Picture;
 
@@ -78,18 +78,31 @@ pub(crate) fn place<E>(
                     .map_err(DotsError::Sampling)?;
                 return stream(&sampling, &map, wish.ranked, take);
             }
-            let read = |columns: Range<usize>, rows: Range<usize>| {
-                let mut window = Vec::new();
-                let len = columns.len() * rows.len();
-                window.try_reserve_exact(len).map_err(|_| DotsError::Memory(len))?;
-                for y in rows {
-                    window.extend_from_slice(&pixels.values()[y * width..][columns.clone()]);
-                }
-                Ok(window)
-            };
+            let read = |columns, rows| window(pixels.values(), width, columns, rows);
             cells(mosaic.cells(), wish, read, take)
         }
     }
+}
+
+/// The pixels of some columns and rows of a picture that is all there.
+///
+/// # Errors
+/// [`DotsError::Map`] if there is no memory for them.
+pub(crate) fn window<E>(
+    pixels: &[f32],
+    width: usize,
+    columns: Range<usize>,
+    rows: Range<usize>,
+) -> Result<Vec<f32>, DotsError<E>> {
+    let mut window = Vec::new();
+    let bytes = columns.len() * rows.len() * size_of::<f32>();
+    window
+        .try_reserve_exact(columns.len() * rows.len())
+        .map_err(|_| DotsError::Map(MapError::Memory { bytes }))?;
+    for y in rows {
+        window.extend_from_slice(&pixels[y * width..][columns.clone()]);
+    }
+    Ok(window)
 }
 
 /// Hands the relaxed dots of some cells of a picture to `take`, and cuts after each cell. `read` gives the pixels of

@@ -412,3 +412,21 @@ fn filled<I: Importance>(
     bits.sort_unstable();
     bits
 }
+
+/// Each seed lets white begin elsewhere among the tiles. Without a look at what lies around a tile, a point of seed 115
+/// comes to white where tiles are moved one by one, and one of seed 719 where whole blocks are.
+#[test]
+fn whole_blocks_of_constant_ground_keep_off_white() {
+    let mut found = 0;
+    for seed in (100..130).chain(705..735) {
+        let pixels = Pixels::new(2, 1, vec![1.0, 0.0], InvalidPixels::Reject).unwrap();
+        let map = ImageMap::new(pixels).unwrap();
+        let placement = Placement::new(map.domain(), seed);
+        let everywhere = placement.domain();
+        for at in filled(&placement, &map, Amount::Points(70_000.0), everywhere) {
+            assert!(f32::from_bits(at[0]) < 1.0, "{seed}");
+            found += 1;
+        }
+    }
+    assert!(found > 4_000_000);
+}
