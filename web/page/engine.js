@@ -71,19 +71,25 @@ class Engine {
   }
 }
 
-// What `web/pack` writes for bytes: their number, and for four of them five digits to the base of 85.
-const DIGITS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?&<>()[]{}@%$#";
+// What `web/pack` writes for bytes: their number, a space, and their bits: a character below 128 stands for seven of
+// them, one above for fourteen, of which the first seven are a character that no string holds as it is.
+const ELSEWHERE = [0, 10, 13, 34, 92];
 
 function bytesOf(packed) {
-  const values = new Uint8Array(128);
-  for (let i = 0; i < 85; i++) values[DIGITS.charCodeAt(i)] = i;
   const start = packed.indexOf(" ") + 1;
-  const length = Number(packed.slice(0, start));
-  const words = new DataView(new ArrayBuffer(4 * Math.ceil(length / 4)));
-  for (let i = start, at = 0; i < packed.length; at += 4) {
-    let word = 0;
-    for (const end = i + 5; i < end; i++) word = 85 * word + values[packed.charCodeAt(i)];
-    words.setUint32(at, word);
+  const bytes = new Uint8Array(Number(packed.slice(0, start)));
+  let bits = 0;
+  let held = 0;
+  let at = 0;
+  const take = (value) => {
+    bits = ((bits << 7) | value) & 0x3fff;
+    held += 7;
+    if (held >= 8) bytes[at++] = bits >> (held -= 8);
+  };
+  for (let i = start; i < packed.length; i++) {
+    const code = packed.charCodeAt(i);
+    if (code >= 128) take(ELSEWHERE[(code >> 7) - 1]);
+    take(code & 127);
   }
-  return words.buffer.slice(0, length);
+  return bytes.buffer;
 }

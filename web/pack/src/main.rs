@@ -11,7 +11,7 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use serde_json::{Map, Value, json};
+use serde_json::json;
 use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> ExitCode {
@@ -46,36 +46,38 @@ fn pack(wasm: &str, worker: &str, pictures: &[String]) -> Result<String, Box<dyn
         &engine[..],
         &mut compressed,
     )?;
-    let mut samples = Map::new();
+    let worker = format!("{glue}\n{}", fs::read_to_string(worker)?);
+    let mut script = format!("\"use strict\";\nconst PACKED = {{\n  worker: {},\n", json!(worker));
+    script += &format!("  engine: \"{}\",\n  samples: {{\n", characters(&compressed));
     for picture in pictures {
         let name = Path::new(picture).file_name().ok_or("a picture without a name")?;
-        let bytes = fs::read(picture)?;
-        samples.insert(name.to_string_lossy().into_owned(), z85(&bytes).into());
+        let pixels = characters(&fs::read(picture)?);
+        script += &format!("    {}: \"{pixels}\",\n", json!(name.to_string_lossy()));
     }
-    let packed = json!({
-        "worker": format!("{glue}\n{}", fs::read_to_string(worker)?),
-        "engine": z85(&compressed),
-        "samples": Value::Object(samples),
-    });
-    Ok(format!("\"use strict\";\nconst PACKED = {packed};\n"))
+    script += "  },\n};\n";
+    Ok(script)
 }
 
-/// Bytes as text, five characters for four bytes, where base64 takes five and a third; none of them is escaped in a
-/// script. The alphabet is that of ZeroMQ's RFC 32. The number of bytes goes before.
-fn z85(bytes: &[u8]) -> String {
-    const ALPHABET: &[u8; 85] =
-        b"0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?&<>()[]{}@%$#";
+/// Bytes as the text of a string of JavaScript, in UTF-8 a seventh longer than they are, where base64 is a third
+/// longer. First comes their number and a space. Then seven bits are a character, which in UTF-8 is one byte; but
+/// where that is none that may stand in a string, these seven bits and the next are one of two bytes.
+fn characters(bytes: &[u8]) -> String {
+    /// Zero, the ends of lines, what ends the string, and what gives the next character another meaning.
+    const ELSEWHERE: [u8; 5] = [0, b'\n', b'\r', b'"', b'\\'];
+    let mut sevens = (0..(8 * bytes.len()).div_ceil(7)).map(|i| {
+        let (byte, bit) = (7 * i / 8, 7 * i % 8);
+        let word = u16::from_be_bytes([bytes[byte], bytes.get(byte + 1).copied().unwrap_or(0)]);
+        (word >> (9 - bit)) as u8 & 127
+    });
     let mut text = format!("{} ", bytes.len());
-    for group in bytes.chunks(4) {
-        let mut word = [0; 4];
-        word[..group.len()].copy_from_slice(group);
-        let mut rest = u32::from_be_bytes(word);
-        let mut digits = [0; 5];
-        for digit in digits.iter_mut().rev() {
-            *digit = ALPHABET[(rest % 85) as usize];
-            rest /= 85;
-        }
-        text.extend(digits.map(char::from));
+    while let Some(seven) = sevens.next() {
+        text.push(match ELSEWHERE.iter().position(|&elsewhere| elsewhere == seven) {
+            None => char::from(seven),
+            Some(place) => {
+                let next = sevens.next().unwrap_or(0);
+                char::from_u32(128 * (place as u32 + 1) + u32::from(next)).expect("below 768")
+            }
+        });
     }
     text
 }
