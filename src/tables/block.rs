@@ -85,6 +85,7 @@ impl<'a> BlockTable<'a> {
     }
 
     /// [`rank_coefficients`](Self::rank_coefficients) of a run of entries.
+    #[inline(always)]
     pub(crate) fn rank_coefficients_of(
         &self,
         range: core::ops::Range<usize>,
@@ -100,7 +101,19 @@ impl<'a> BlockTable<'a> {
     /// one level down, relative to the block, and their class over two generations. None below
     /// depth 3.
     pub(crate) fn relax_keys(&self) -> impl ExactSizeIterator<Item = (u8, u16)> + 'a {
-        self.turns.iter().zip(self.classes).map(|(turn, class)| (*turn, u16::from_le_bytes(*class)))
+        self.relax_keys_of(0..self.turns.len())
+    }
+
+    /// [`relax_keys`](Self::relax_keys) of a run of entries, as far as there are any.
+    #[inline(always)]
+    pub(crate) fn relax_keys_of(
+        &self,
+        range: core::ops::Range<usize>,
+    ) -> impl ExactSizeIterator<Item = (u8, u16)> + 'a {
+        let end = range.end.min(self.turns.len()).min(self.classes.len());
+        let range = range.start.min(end)..end;
+        let columns = self.turns[range.clone()].iter().zip(&self.classes[range]);
+        columns.map(|(turn, class)| (*turn, u16::from_le_bytes(*class)))
     }
 
     /// Of entry `i` among the [`relax_keys`](Self::relax_keys); zeros past them.

@@ -107,7 +107,7 @@ impl<I: Importance> Displacer<'_, '_, I> {
                 (*a, *b) = of;
             }
             if ground.below == 3 {
-                let keys = block.relax_keys().skip(first).take(len);
+                let keys = block.relax_keys_of(first..first + len);
                 for ((turn, class), of) in turns.iter_mut().zip(&mut classes).zip(keys) {
                     (*turn, *class) = (of.0, of.1.into());
                 }
