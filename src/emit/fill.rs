@@ -279,6 +279,12 @@ fn append<S: Scalar, O: Output<Position: Position<Scalar = S>>>(
     to_world: &ToWorld<S>,
 ) -> bool {
     let room = output.room() - *written;
+    if chunk.whole && room >= chunk.len {
+        let points = chunk.x[..chunk.len].iter().zip(&chunk.y).map(|(x, y)| [*x, *y]);
+        output.write(*written, chunk.len, points, to_world);
+        *written += chunk.len;
+        return true;
+    }
     if room >= chunk.len {
         let mut at = *written;
         // A rejected candidate is overwritten by the next one: no branch depends on the data.

@@ -47,6 +47,8 @@ pub(crate) struct Chunk<S> {
     packed: bool,
     /// 1 for the points of the set, 0 for the others.
     pub(crate) keep: [u8; CHUNK],
+    /// Whether it is known that all are.
+    pub(crate) whole: bool,
     /// The importance at each.
     pub(crate) values: [f64; CHUNK],
 }
@@ -62,6 +64,7 @@ impl<S: Scalar> Chunk<S> {
             first: 0,
             packed: false,
             keep: [0; CHUNK],
+            whole: false,
             values: [0.0; CHUNK],
         }
     }
@@ -86,7 +89,7 @@ impl<S: Scalar> Chunk<S> {
         let next = self.load(sampling.placement(), batch, start..batch.run_end(start));
         if batch.inside {
             if sure {
-                self.keep[..self.len].fill(1);
+                self.keep_all();
             }
         } else {
             self.mark_inside::<I, P>(walk);
@@ -158,8 +161,15 @@ impl<S: Scalar> Chunk<S> {
             write(next, segment, &mut self.x[filled.clone()], &mut self.y[filled.clone()]);
             (self.len, next) = (filled.end, end);
         }
-        (self.first, self.packed) = (entries.start, false);
+        (self.first, self.packed, self.whole) = (entries.start, false, false);
         next
+    }
+
+    /// Marks all candidates.
+    #[inline(always)]
+    pub(crate) fn keep_all(&mut self) {
+        self.keep[..self.len].fill(1);
+        self.whole = true;
     }
 
     /// The importance at each candidate.

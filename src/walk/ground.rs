@@ -70,7 +70,7 @@ impl<S: Scalar> Chunk<S> {
                 Displacer::new(sampling, displacements, batch, ancestry)
                     .move_constant(self, ground, sampling);
                 if batch.inside {
-                    self.keep[..self.len].fill(1);
+                    self.keep_all();
                 } else {
                     self.mark_inside::<I, P>(walk);
                 }

@@ -123,7 +123,7 @@ impl<S: Scalar> Chunk<S> {
         }
         mover.move_all(self);
         if batch.inside {
-            self.keep[..self.len].fill(1);
+            self.keep_all();
         } else {
             self.mark_inside::<I, P>(walk);
         }
