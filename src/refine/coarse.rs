@@ -5,7 +5,7 @@ use super::conjugate::Flow;
 use super::density::Density;
 use super::error::{RefineError, filled, reserve};
 use super::ink::Ink;
-use super::threads::{PART, for_parts};
+use crate::threads::{PART, for_parts};
 
 /// Side of a cell, in mean spacings. At 1 the grid follows the dots' own noise.
 const SIDE: f64 = 1.5;

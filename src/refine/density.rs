@@ -3,7 +3,7 @@
 use super::cells::LANES;
 use super::error::{RefineError, filled, reserve};
 use super::ink::Ink;
-use super::threads::for_parts;
+use crate::threads::for_parts;
 
 /// Spacings below this many pixels make dots gather on pixel centers, so that pixels are divided until
 /// the darkest has this spacing. 250,000 dots on 512² pixels are ruined without.

@@ -53,7 +53,6 @@ mod spread;
 mod start;
 #[cfg(test)]
 mod tests;
-mod threads;
 mod work;
 
 use crate::position::Position;

@@ -12,7 +12,7 @@ use super::error::{RefineError, filled};
 use super::ink::Ink;
 use super::power::{Cell, Power};
 use super::share::{Other, Share};
-use super::threads::{PART, for_parts};
+use crate::threads::{PART, for_parts};
 
 /// Newton's steps. The masses of cells are off by 5 % before the first, by 1 % after it and by .6 % after the second;
 /// more gain nothing.

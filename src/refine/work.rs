@@ -7,10 +7,10 @@ use super::coarse::Coarse;
 use super::density::Density;
 use super::error::{RefineError, filled};
 use super::ink::Ink;
-use super::threads::{PART, for_parts};
 use super::{force, start};
 use crate::position::{Position, Scalar};
 use crate::simd::Simd;
+use crate::threads::{PART, for_parts};
 
 /// Share of the last move that a dot keeps. Ten iterations with .4 leave the nearest dots nearer (first
 /// percentile of distances .719 of hexagonal, .730 with .5); .7 overshoots.

@@ -75,16 +75,18 @@ impl Pages {
         Area { x: outward(&area.x, self.image.0), y: outward(&area.y, self.image.1) }
     }
 
+    /// Each row of the pages that an area touches, as one area.
+    pub(super) fn rows(&self, area: &Area) -> impl Iterator<Item = Area> + use<> {
+        let (side, height) = (self.side, self.image.1);
+        let Area { x, y } = self.around(area);
+        y.step_by(side).map(move |y| Area { x: x.clone(), y: y..(y + side).min(height) })
+    }
+
     /// Each page that an area touches, row by row.
     pub(super) fn of(&self, area: &Area) -> impl Iterator<Item = Area> + use<> {
-        let Self { side, image: (width, height) } = *self;
-        let all = self.around(area);
-        let columns = all.x.clone();
-        all.y.step_by(side).flat_map(move |y| {
-            columns
-                .clone()
-                .step_by(side)
-                .map(move |x| Area { x: x..(x + side).min(width), y: y..(y + side).min(height) })
+        let (side, width) = (self.side, self.image.0);
+        self.rows(area).flat_map(move |Area { x, y }| {
+            x.step_by(side).map(move |x| Area { x: x..(x + side).min(width), y: y.clone() })
         })
     }
 }

@@ -31,6 +31,7 @@ use self::area::Pages;
 use self::spread::Spread;
 use self::sums::{Cut, Sums};
 use super::pixels::{MapError, filled, with_room};
+use crate::threads;
 
 /// The side of a page is at least so many reaches of a box: its sums, which reach beyond it, then have at most 2.25
 /// times its pixels.
@@ -38,6 +39,9 @@ const PAGE_REACHES: usize = 4;
 
 /// Twice as many up to this side: then they have at most 1.6 times its pixels, and fit in a processor's cache.
 const SMALL_PAGE: usize = 64;
+
+/// No more rows of pages than this are worked on at a time, for the sake of memory: 8 bytes a pixel.
+const MOST_ROWS: usize = 16;
 
 /// Sides of pages are multiples of so many pixels.
 const LEAST_PAGE: usize = 16;
@@ -111,45 +115,110 @@ impl Planes {
         let mut tones = filled(0.0f32, toned.len())?;
         let mut halves = filled(0.0f32, toned.len())?;
         let (mut phase, mut detail) = (filled(0.0f32, core.len())?, filled(0u8, core.len())?);
-        let mut sums = Sums::default();
-        for page in pages.of(toned) {
-            sums.measure((image, needed), &page.grown(*reach, *whole), *whole)?;
-            for_each_pixel(&page.and(toned), |x, y| {
-                let value = image[needed.index(x, y)];
-                let around = surroundings(&sums, [x, y], value.into(), scales);
-                let i = toned.index(x, y);
-                // A tone of 0 is a pixel of 0, and the other way round.
-                tones[i] =
-                    if value > 0.0 { (around.tone as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
-                halves[i] = around.half as f32;
-                if core.x.contains(&x) && core.y.contains(&y) {
-                    phase[core.index(x, y)] = around.phase as f32;
-                    detail[core.index(x, y)] = around.detail;
-                }
+        let mut rows = with_room(pages.rows(toned).count())?;
+        let (mut tones_below, mut halves_below) = (&mut tones[..], &mut halves[..]);
+        let (mut phase_below, mut detail_below) = (&mut phase[..], &mut detail[..]);
+        for area in pages.rows(toned) {
+            let (area, inner) = (area.and(toned), area.and(core));
+            rows.push(Row {
+                tones: first(&mut tones_below, area.len()),
+                halves: first(&mut halves_below, area.len()),
+                phase: first(&mut phase_below, inner.len()),
+                detail: first(&mut detail_below, inner.len()),
+                area,
+                inner,
             });
         }
+        threads::for_each(&mut rows, |row| row.measure(image, layout, scales))?;
 
-        // What each pixel gives to the tones in its box.
+        // What each pixel gives to the tones in its box: found side by side, and added in the order of the pages.
         let mut spread = Spread::new(*pages, core)?;
-        for page in pages.of(shared) {
-            sums.measure((&tones, toned), &page.grown(*reach, *whole), *whole)?;
-            for_each_pixel(&page.and(shared), |x, y| {
-                let i = toned.index(x, y);
-                let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
-                if rest != 0.0 {
-                    let cut = Cut::about([x, y], halves[i].into(), *whole);
-                    let [sum, _] = sums.over(&cut);
-                    if sum > 0.0 {
-                        spread.add(&cut, rest / sum);
-                    }
+        let mut rows = pages.rows(shared);
+        loop {
+            let most = threads::count().min(MOST_ROWS);
+            let mut gifts = with_room(most)?;
+            gifts.extend(rows.by_ref().take(most).map(|area| (area.and(shared), Vec::new())));
+            if gifts.is_empty() {
+                break;
+            }
+            threads::for_each(&mut gifts, |(area, gifts)| {
+                *gifts = filled(0.0, area.len())?;
+                let mut sums = Sums::default();
+                for page in pages.of(area) {
+                    sums.measure((&tones, toned), &page.grown(*reach, *whole), *whole)?;
+                    for_each_pixel(&page.and(area), |x, y| {
+                        let i = toned.index(x, y);
+                        let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
+                        if rest != 0.0 {
+                            let [sum, _] = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
+                            gifts[area.index(x, y)] = if sum > 0.0 { rest / sum } else { 0.0 };
+                        }
+                    });
                 }
-            });
+                Ok(())
+            })?;
+            for (area, gifts) in &gifts {
+                for page in pages.of(area) {
+                    for_each_pixel(&page.and(area), |x, y| {
+                        let gift = gifts[area.index(x, y)];
+                        if gift != 0.0 {
+                            let half = halves[toned.index(x, y)];
+                            spread.add(&Cut::about([x, y], half.into(), *whole), gift);
+                        }
+                    });
+                }
+            }
         }
         spread.finish(&mut tones, toned);
         if core != toned {
             tones = cropped(&tones, toned, core)?;
         }
         Ok(Self { acceptance: tones, phase, detail })
+    }
+}
+
+/// Takes the first `len` elements of what is left of a plane.
+fn first<'p, T>(plane: &mut &'p mut [T], len: usize) -> &'p mut [T] {
+    let (first, rest) = core::mem::take(plane).split_at_mut(len);
+    *plane = rest;
+    first
+}
+
+/// A row of pages, and what the planes have there.
+struct Row<'p> {
+    /// Of the tones.
+    area: Area,
+    tones: &'p mut [f32],
+    halves: &'p mut [f32],
+    /// Of the core.
+    inner: Area,
+    phase: &'p mut [f32],
+    detail: &'p mut [u8],
+}
+
+impl Row<'_> {
+    /// All but what pixels give to others.
+    fn measure(&mut self, image: &[f32], layout: &Layout, scales: &Scales) -> Result<(), MapError> {
+        let Layout { whole, pages, reach, needed, .. } = layout;
+        let Self { area, inner, .. } = self;
+        let mut sums = Sums::default();
+        for page in pages.of(area) {
+            sums.measure((image, needed), &page.grown(*reach, *whole), *whole)?;
+            for_each_pixel(&page.and(area), |x, y| {
+                let value = image[needed.index(x, y)];
+                let around = surroundings(&sums, [x, y], value.into(), scales);
+                let i = area.index(x, y);
+                // A tone of 0 is a pixel of 0, and the other way round.
+                self.tones[i] =
+                    if value > 0.0 { (around.tone as f32).max(f32::MIN_POSITIVE) } else { 0.0 };
+                self.halves[i] = around.half as f32;
+                if inner.x.contains(&x) && inner.y.contains(&y) {
+                    self.phase[inner.index(x, y)] = around.phase as f32;
+                    self.detail[inner.index(x, y)] = around.detail;
+                }
+            });
+        }
+        Ok(())
     }
 }
 

@@ -12,11 +12,11 @@ use alloc::vec::Vec;
 
 use super::super::cells::{Cells, LANES};
 use super::super::error::{RefineError, filled};
-use super::super::threads::{PART, for_parts};
 use super::super::work::Work;
 use super::class::Class;
 use super::pyramid::weight;
 use crate::simd::Simd;
+use crate::threads::{PART, for_parts};
 
 /// Reach of a class's dots, in its spacings. Of four equal classes of 6,000 dots, mean nearest distance and power
 /// at low frequency of each: .82 and .04 at 1.5, .69 and .03 at 2, .59 and .17 at 3.

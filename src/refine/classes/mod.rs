@@ -21,11 +21,11 @@ mod tests;
 use alloc::vec::Vec;
 
 use super::error::{RefineError, filled, reserve};
-use super::threads::{PART, for_parts};
 use super::work::{self, FURTHEST, MOMENTUM, STEP, Work};
 use super::{force, polish};
 use crate::position::Position;
 use crate::simd::Simd;
+use crate::threads::{PART, for_parts};
 use class::Class;
 use exchange::Exchange;
 pub use planes::Classes;
