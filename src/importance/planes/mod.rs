@@ -150,7 +150,7 @@ impl Planes {
                         let i = toned.index(x, y);
                         let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
                         if rest != 0.0 {
-                            let [sum, _] = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
+                            let sum = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
                             gifts[area.index(x, y)] = if sum > 0.0 { rest / sum } else { 0.0 };
                         }
                     });
@@ -273,11 +273,11 @@ impl Layout {
 
 fn surroundings(sums: &Sums, at: [usize; 2], value: f64, scales: &Scales) -> Surroundings {
     let means = |half: f64| sums.means(at, half);
-    let [around, _] = means(scales.mean_spacing);
+    let around = sums.mean(at, scales.mean_spacing);
     let [by_box, square_by_box] = means(scales.spacing(around));
     let spacing = scales.spacing(by_box);
     let half = scales.acceptance * spacing;
-    let [mut tone, _] = means(half);
+    let mut tone = sums.mean(at, half);
     let [local, square] = means(spacing);
     let mut phase = by_box;
     let deviation = |[mean, square]: [f64; 2]| libm::sqrt((square - mean * mean).max(0.0));
@@ -348,6 +348,25 @@ mod tests {
             for (pixel, accepted) in image.iter().zip(&acceptance) {
                 prop_assert!(*accepted >= 0.0 && (*pixel > 0.0 || *accepted == 0.0));
             }
+        }
+    }
+
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn any_number_of_threads_makes_the_same_maps() {
+        let mut random = SplitMix64::new(7);
+        let image: Vec<f32> = (0..300 * 210)
+            .map(|i| if i % 300 < 90 { 0.6 } else { random.unit() as f32 - 0.2 })
+            .map(|value| value.max(0.0))
+            .collect();
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let made = pool.install(|| planes(&image, 300, 9000.0));
+            (made.acceptance, made.phase, made.detail)
+        };
+        let one = run(1);
+        for threads in [2, 3, 40] {
+            assert!(run(threads) == one, "{threads}");
         }
     }
 

@@ -96,7 +96,8 @@ impl Spread {
 /// Adds `height` over all of a page that is right of x and below y.
 #[inline]
 fn add_corner(page: &mut [f64], stride: usize, [x, y]: [f64; 2], height: f64) {
-    let (i, j) = (x as usize, y as usize);
+    // As for the sums, whose parts are larger than pages.
+    let (i, j) = (x as u32 as usize, y as u32 as usize);
     let (fx, fy) = (x - i as f64, y - j as f64);
     let (above, below) = (height * (1.0 - fy), height * fy);
     let at = j * stride + i;
