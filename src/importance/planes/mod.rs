@@ -23,6 +23,7 @@
 mod area;
 mod spread;
 mod sums;
+mod surroundings;
 
 use alloc::vec::Vec;
 
@@ -30,6 +31,8 @@ pub(crate) use self::area::Area;
 use self::area::Pages;
 use self::spread::Spread;
 use self::sums::{Cut, Sums};
+pub(super) use self::surroundings::Scales;
+use self::surroundings::surroundings;
 use super::pixels::{MapError, filled, with_room};
 use crate::threads;
 
@@ -46,51 +49,6 @@ const MOST_ROWS: usize = 16;
 /// Sides of pages are multiples of so many pixels.
 const LEAST_PAGE: usize = 16;
 
-/// The relative deviations between which the share of the layer for detail grows from 0 to 1.
-const DETAIL_RANGE: [f64; 2] = [0.03, 0.15];
-
-/// By how much, of the mean, the box's deviation exceeds twice the quietest quadrant's where an edge
-/// begins and where there surely is one. A slope's is twice its quadrants', texture's about theirs.
-const EDGE_RANGE: [f64; 2] = [0.03, 0.10];
-
-/// The relative deviations of a quadrant between which its mean gives way to the pixel itself.
-const FINE_RANGE: [f64; 2] = [0.35, 0.6];
-
-/// The relative deviations of the box between which texture without an edge counts as finer than the
-/// spacing.
-const TEXTURE_RANGE: [f64; 2] = [0.6, 0.9];
-
-/// The least detail beside an edge, where points come back from across it: the layer for detail moves them
-/// less far. Of 90,000 points on letters and thin strokes, 164 have another within half a spacing without it,
-/// 20 at 0.4, 8 at 0.5 and at 0.75; from 0.75 on, stripes of a few spacings have more again.
-const EDGE_DETAIL: f64 = 0.5;
-
-/// The part of the way from `low` to `high`, 0 … 1.
-fn share([low, high]: [f64; 2], at: f64) -> f64 {
-    ((at - low) / (high - low)).clamp(0.0, 1.0)
-}
-
-/// Lengths in pixels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scales {
-    pub(super) spacing_of_one: f64,
-    pub(super) mean_spacing: f64,
-    pub(super) largest: f64,
-    /// In local spacings.
-    pub(super) acceptance: f64,
-}
-
-impl Scales {
-    /// The spacing of points where the importance is `importance`, in pixels, capped.
-    pub(super) fn spacing(&self, importance: f64) -> f64 {
-        if importance > 0.0 {
-            (self.spacing_of_one / libm::sqrt(importance)).min(self.largest)
-        } else {
-            self.largest
-        }
-    }
-}
-
 /// The maps that points read, row by row.
 pub(super) struct Planes {
     pub(super) acceptance: Vec<f32>,
@@ -99,19 +57,10 @@ pub(super) struct Planes {
     pub(super) detail: Vec<u8>,
 }
 
-/// What is known of a pixel's surroundings.
-struct Surroundings {
-    tone: f64,
-    phase: f64,
-    detail: u8,
-    /// Half-side of the pixel's box.
-    half: f64,
-}
-
 impl Planes {
     /// The maps over the pages around `core`, from the pixels that they [`need`](Layout::needed).
     pub(super) fn new(image: &[f32], layout: &Layout, scales: &Scales) -> Result<Self, MapError> {
-        let Layout { whole, pages, reach, core, shared, toned, needed } = layout;
+        let Layout { whole, pages, core, shared, toned, .. } = layout;
         let mut tones = filled(0.0f32, toned.len())?;
         let mut halves = filled(0.0f32, toned.len())?;
         let (mut phase, mut detail) = (filled(0.0f32, core.len())?, filled(0u8, core.len())?);
@@ -142,19 +91,7 @@ impl Planes {
                 break;
             }
             threads::for_each(&mut gifts, |(area, gifts)| {
-                *gifts = filled(0.0, area.len())?;
-                let mut sums = Sums::default();
-                for page in pages.of(area) {
-                    sums.measure((&tones, toned), &page.grown(*reach, *whole), *whole)?;
-                    for_each_pixel(&page.and(area), |x, y| {
-                        let i = toned.index(x, y);
-                        let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
-                        if rest != 0.0 {
-                            let sum = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
-                            gifts[area.index(x, y)] = if sum > 0.0 { rest / sum } else { 0.0 };
-                        }
-                    });
-                }
+                *gifts = gifts_of(area, image, [&tones, &halves], layout)?;
                 Ok(())
             })?;
             for (area, gifts) in &gifts {
@@ -175,6 +112,30 @@ impl Planes {
         }
         Ok(Self { acceptance: tones, phase, detail })
     }
+}
+
+/// What each pixel of a row of pages gives: of the tone of every pixel in its box, in proportion to that.
+fn gifts_of(
+    row: &Area,
+    image: &[f32],
+    [tones, halves]: [&[f32]; 2],
+    layout: &Layout,
+) -> Result<Vec<f64>, MapError> {
+    let Layout { whole, pages, reach, toned, needed, .. } = layout;
+    let mut gifts = filled(0.0, row.len())?;
+    let mut sums = Sums::default();
+    for page in pages.of(row) {
+        sums.measure((tones, toned), &page.grown(*reach, *whole), *whole)?;
+        for_each_pixel(&page.and(row), |x, y| {
+            let i = toned.index(x, y);
+            let rest = f64::from(image[needed.index(x, y)]) - f64::from(tones[i]);
+            if rest != 0.0 {
+                let sum = sums.over(&Cut::about([x, y], halves[i].into(), *whole));
+                gifts[row.index(x, y)] = if sum > 0.0 { rest / sum } else { 0.0 };
+            }
+        });
+    }
+    Ok(gifts)
 }
 
 /// Takes the first `len` elements of what is left of a plane.
@@ -269,42 +230,6 @@ impl Layout {
         let needed = pages.around(&toned).grown(reach, whole);
         Self { whole, pages, reach, core, shared, toned, needed }
     }
-}
-
-fn surroundings(sums: &Sums, at: [usize; 2], value: f64, scales: &Scales) -> Surroundings {
-    let means = |half: f64| sums.means(at, half);
-    let around = sums.mean(at, scales.mean_spacing);
-    let [by_box, square_by_box] = means(scales.spacing(around));
-    let spacing = scales.spacing(by_box);
-    let half = scales.acceptance * spacing;
-    let mut tone = sums.mean(at, half);
-    let [local, square] = means(spacing);
-    let mut phase = by_box;
-    let deviation = |[mean, square]: [f64; 2]| libm::sqrt((square - mean * mean).max(0.0));
-    let ratio = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
-    let all = deviation([local, square]);
-    let mut unevenness = ratio(all, local);
-    let mut least_detail = 0.0;
-    if unevenness > EDGE_RANGE[0] {
-        let quadrants = sums.quadrants(at, spacing).map(|means| (means[0], deviation(means)));
-        let (mean, least) =
-            quadrants.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a }).unwrap_or_default();
-        let edge = share(EDGE_RANGE, ratio(all - 2.0 * least, local));
-        let fine = share(FINE_RANGE, ratio(least, mean));
-        let side = mean + fine * (value - mean);
-        // Where there is texture but no edge, its pixels of 0 matter alone.
-        let edge = edge.max(share(TEXTURE_RANGE, unevenness));
-        tone += edge * (side - tone);
-        // The importance at the points of the box, rather than at its pixels.
-        let of_points = ratio(square_by_box, by_box);
-        phase += edge * (of_points - phase);
-        let across = ratio(libm::fabs(of_points - side), side) + ratio(least, mean);
-        unevenness += edge * (across - unevenness);
-        least_detail = edge * EDGE_DETAIL;
-    }
-    let detail = share(DETAIL_RANGE, unevenness).max(least_detail);
-    let detail = (detail * 255.0 + 0.5) as u8;
-    Surroundings { tone, phase, detail, half }
 }
 
 #[cfg(test)]
