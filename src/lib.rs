@@ -53,7 +53,8 @@
 //!
 //! - `std` (default): the module `refine`; glam and serde use `std`;
 //! - `simd` (default): wider vector instructions, chosen when the program runs; the same points;
-//! - `parallel`: `Shards`, and threads for `refine` and for making `StippleMap`s, with rayon; the same points in the same order;
+//! - `parallel`: `Shards`, and threads for `refine` and for making a `StippleMap`, with rayon; the same points
+//!   in the same order;
 //! - `serde`: `Serialize` and `Deserialize` for [`Domain`], [`Amount`], [`Limits`] and [`Sample`].
 #![cfg_attr(not(feature = "std"), no_std)]
 

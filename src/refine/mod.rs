@@ -36,7 +36,7 @@
 //! `ink`: where dots may be. `density`: dots a pixel and spacing. `start` and `spread`: dots as they came, made fit.
 //! `cells`: who is near. `force`, then `coarse` and `conjugate`: the two moves. `classes`: dots of several kinds.
 //! `polish`, with `power` and `share`: the one move that [`Refiner::polish`] adds. `work`: what a
-//! refiner keeps. `threads`: who does which.
+//! refiner keeps.
 
 mod cells;
 mod classes;

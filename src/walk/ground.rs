@@ -11,7 +11,7 @@ use super::chunk::{CHUNK, Chunk};
 use super::context::Context;
 use super::relaxed::Displacer;
 use crate::importance::Importance;
-use crate::placement::FIRST_RELAXED_LEVEL;
+use crate::placement::{FIRST_RELAXED_LEVEL, Placement};
 use crate::position::{Position, Scalar};
 use crate::sampling::Sampling;
 use crate::simd::Simd;
@@ -20,33 +20,38 @@ use crate::tables::displacement::{RUN, Reading};
 use crate::tiling::numbers::{DELTA, Rotation};
 use crate::tree::frame::EdgeFrame;
 
-/// What all points of a batch read.
+/// What all points read where the importance is the same.
+#[derive(Clone, Copy)]
 pub(super) struct Ground {
-    /// Theirs, and so many levels below the batch's tile.
-    level: u8,
-    below: u8,
-    reading: Reading,
+    /// That of all points.
+    pub(super) level: u8,
+    pub(super) reading: Reading,
 }
 
 impl Ground {
-    /// Of a batch on constant ground; `None` unless its points are one to three levels below its tile.
+    /// Where the importance is `value`; `None` where that is so low that points are not moved.
     #[inline(never)]
     pub(super) fn of(
         sampling: &Sampling<'_, impl Importance>,
         displacements: &DisplacementTable<'_>,
-        batch: &Candidates,
+        value: f64,
     ) -> Option<Self> {
-        let placement = sampling.placement();
-        let numbering = placement.numbering();
-        let threshold = sampling.scale().threshold(batch.bound);
+        let numbering = sampling.placement().numbering();
+        let threshold = sampling.scale().threshold(value);
         let level = numbering.counts().level_of(threshold);
-        let below = level.checked_sub(batch.node.level).filter(|below| (1..=3).contains(below))?;
-        let known = below < 3 || placement.tables().depth() >= 3;
-        if level < FIRST_RELAXED_LEVEL || !known || batch.start == 0 {
+        if level < FIRST_RELAXED_LEVEL {
             return None;
         }
         let phase = threshold * numbering.reciprocal(usize::from(level) - 1);
-        Some(Self { level, below, reading: displacements.reading(phase.clamp(1.0, DELTA), 0.0) })
+        Some(Self { level, reading: displacements.reading(phase.clamp(1.0, DELTA), 0.0) })
+    }
+
+    /// How many levels the points of a batch are below its tile, one to three; `None` if they are not, or if the
+    /// tables do not reach so deep.
+    pub(super) fn below(&self, placement: &Placement<'_>, batch: &Candidates) -> Option<u8> {
+        let below = self.level.checked_sub(batch.node.level)?;
+        let known = below < 3 || placement.tables().depth() >= 3;
+        ((1..=3).contains(&below) && known && batch.start > 0).then_some(below)
     }
 }
 
@@ -56,7 +61,8 @@ impl<S: Scalar> Chunk<S> {
     pub(super) fn select_constant<I: Importance, P: Position<Scalar = S>>(
         &mut self,
         walk: &Context<'_, '_, I, S>,
-        (ground, displacements): (&Ground, &DisplacementTable<'_>),
+        displacements: &DisplacementTable<'_>,
+        (ground, below): (&Ground, u8),
         batch: &Candidates,
         ancestry: &Ancestry,
         start: usize,
@@ -68,7 +74,7 @@ impl<S: Scalar> Chunk<S> {
                 let next = self.load(sampling.placement(), batch, start..batch.end);
                 self.list_entries();
                 Displacer::new(sampling, displacements, batch, ancestry)
-                    .move_constant(self, ground, sampling);
+                    .move_constant(self, ground, below);
                 if batch.inside {
                     self.keep_all();
                 } else {
@@ -83,15 +89,10 @@ impl<S: Scalar> Chunk<S> {
 impl<I: Importance> Displacer<'_, '_, I> {
     /// Moves all points of a chunk of entries in a row.
     #[inline(always)]
-    fn move_constant<S: Scalar>(
-        &self,
-        chunk: &mut Chunk<S>,
-        ground: &Ground,
-        sampling: &Sampling<'_, I>,
-    ) {
+    fn move_constant<S: Scalar>(&self, chunk: &mut Chunk<S>, ground: &Ground, below: u8) {
         let node = &self.batch.node;
-        let placement = sampling.placement();
-        let formula = ClassFormula::of_entries(self.ancestry, node, ground.below.into());
+        let placement = self.sampling.placement();
+        let formula = ClassFormula::of_entries(self.ancestry, node, below.into());
         let frame = EdgeFrame::new(placement.turned_edge(ground.level, formula.rotation));
         let free = self.may_go_anywhere(ground.level);
         let block = self.batch.block(placement);
@@ -106,13 +107,13 @@ impl<I: Importance> Displacer<'_, '_, I> {
             for ((a, b), of) in columns.zip(block.rank_coefficients_of(first..first + len)) {
                 (*a, *b) = of;
             }
-            if ground.below == 3 {
+            if below == 3 {
                 let keys = block.relax_keys_of(first..first + len);
                 for ((turn, class), of) in turns.iter_mut().zip(&mut classes).zip(keys) {
                     (*turn, *class) = (of.0, of.1.into());
                 }
             }
-            let classes = |generations: u32| match (ground.below, generations) {
+            let classes = |generations: u32| match (below, generations) {
                 (3, 2) => classes,
                 _ => {
                     let mut classes = [0; RUN];

@@ -100,10 +100,18 @@ impl Mode for Ancestry {
         match walk.sampling.displacements() {
             Some(displacements) => {
                 if batch.constant
-                    && let Some(ground) = Ground::of(walk.sampling, displacements, batch)
+                    && let Some(ground) = Ground::of(walk.sampling, displacements, batch.bound)
+                    && let Some(below) = ground.below(walk.sampling.placement(), batch)
                 {
-                    let ground = (&ground, displacements);
-                    return Ok(chunk.select_constant::<I, P>(walk, ground, batch, self, start));
+                    let ground = (&ground, below);
+                    return Ok(chunk.select_constant::<I, P>(
+                        walk,
+                        displacements,
+                        ground,
+                        batch,
+                        self,
+                        start,
+                    ));
                 }
                 chunk.select_relaxed::<I, P>(walk, displacements, batch, self, start)
             }

@@ -63,7 +63,7 @@ pub(crate) fn reaches(center: DVec2, moved: DVec2, settled: DVec2) -> bool {
 
 /// A chunk's points on their way.
 pub(super) struct Displacer<'w, 'a, I> {
-    sampling: &'w Sampling<'a, I>,
+    pub(super) sampling: &'w Sampling<'a, I>,
     pub(super) displacements: &'w DisplacementTable<'a>,
     pub(super) batch: &'w Candidates,
     pub(super) ancestry: &'w Ancestry,

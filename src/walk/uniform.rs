@@ -7,15 +7,15 @@ use super::ancestry::ClassFormula;
 use super::candidates::Candidates;
 use super::count::count_below;
 use super::displaced::Displaced;
+use super::ground::Ground;
 use super::relaxed::is_free;
 use crate::importance::Importance;
-use crate::placement::{FIRST_RELAXED_LEVEL, FRONTIER_LEVEL, Placement};
+use crate::placement::FRONTIER_LEVEL;
 use crate::position::Scalar;
 use crate::sampling::Sampling;
 use crate::tables::DisplacementTable;
-use crate::tables::displacement::Reading;
 use crate::tiling::TileType;
-use crate::tiling::numbers::{DELTA, Rotation};
+use crate::tiling::numbers::Rotation;
 use crate::tree::frame::EdgeFrame;
 use crate::tree::node::Node;
 
@@ -40,43 +40,13 @@ pub(crate) type BlockVectors = [[[f32; ENTRIES]; 2]; 4];
 /// The vectors of the constant ground that the walk is on.
 pub(crate) struct UniformDisplacements<'v, 'a> {
     displacements: &'a DisplacementTable<'a>,
-    /// The importance there, and what is known of it if it has tables.
+    /// The importance there, and what is read there if blocks tell the vectors.
     value: f64,
     ground: Option<Ground>,
     /// Another one, and how many points in a row were on it.
     next: (f64, usize),
     vectors: &'v mut Option<BlockVectors>,
     known: [bool; 4],
-}
-
-/// What follows from a constant importance.
-#[derive(Clone, Copy)]
-struct Ground {
-    reading: Reading,
-    /// The level of all points.
-    level: u8,
-    /// Ranks below this are points.
-    limit: u64,
-}
-
-impl Ground {
-    /// `None` where blocks do not tell the vectors.
-    fn of(
-        sampling: &Sampling<'_, impl Importance>,
-        displacements: &DisplacementTable<'_>,
-        value: f64,
-    ) -> Option<Self> {
-        let threshold = sampling.scale().threshold(value);
-        let numbering = sampling.placement().numbering();
-        let level = numbering.counts().level_of(threshold);
-        let below = level >= FIRST_RELAXED_LEVEL.max(FRONTIER_LEVEL + LEVELS);
-        let tau = threshold * numbering.reciprocal(usize::from(level).saturating_sub(1));
-        let reading = displacements.reading(tau.clamp(1.0, DELTA), 0.0);
-        // Classes over more generations are not told by the block alone.
-        let in_block = displacements.generations(&reading) <= u32::from(LEVELS);
-        let limit = sampling.scale().limit(value);
-        (below && in_block).then_some(Self { reading, level, limit })
-    }
 }
 
 impl<'v, 'a> UniformDisplacements<'v, 'a> {
@@ -107,8 +77,14 @@ impl<'v, 'a> UniformDisplacements<'v, 'a> {
     #[cold]
     #[inline(never)]
     fn turn_to(&mut self, sampling: &Sampling<'_, impl Importance>, value: f64) {
+        let displacements = self.displacements;
+        // What blocks tell: classes over no more generations than they have levels.
+        let told = |ground: &Ground| {
+            ground.level >= FRONTIER_LEVEL + LEVELS
+                && displacements.generations(&ground.reading) <= u32::from(LEVELS)
+        };
         self.value = value;
-        self.ground = Ground::of(sampling, self.displacements, value);
+        self.ground = Ground::of(sampling, displacements, value).filter(told);
         self.known = [false; 4];
     }
 
@@ -141,7 +117,7 @@ impl<'v, 'a> UniformDisplacements<'v, 'a> {
             return None;
         }
         if !self.known[node.kind.index()] {
-            self.look_up(placement, node.kind);
+            self.look_up(sampling, node.kind);
         }
         let [x, y] = &self.vectors.as_ref()?[node.kind.index()];
         let frame = EdgeFrame::new(placement.turned_edge(level, node.rotation));
@@ -151,13 +127,15 @@ impl<'v, 'a> UniformDisplacements<'v, 'a> {
     /// Looks up the vectors of a type's entries that can be points.
     #[cold]
     #[inline(never)]
-    fn look_up(&mut self, placement: &Placement<'_>, kind: TileType) {
-        let Some(Ground { reading, level, limit }) = self.ground else { return };
+    fn look_up(&mut self, sampling: &Sampling<'_, impl Importance>, kind: TileType) {
+        let Some(Ground { reading, level }) = self.ground else { return };
+        let placement = sampling.placement();
         let block = placement.tables().block(kind);
         let formula = ClassFormula::of_block(kind.index());
         let turns: [Rotation; 12] = core::array::from_fn(|turn| Rotation::new(turn as u8));
         // The tile of least rank has the most.
         let first = Node { kind, level: level - LEVELS, ..Node::root() };
+        let limit = sampling.scale().limit(self.value);
         let end = count_below(placement.numbering(), &first, block, LEVELS.into(), limit);
         let vectors = self.vectors.get_or_insert_with(|| [[[0.0; ENTRIES]; 2]; 4]);
         let [x, y] = &mut vectors[kind.index()];

@@ -1,11 +1,11 @@
 // The drawing view, as people use it; its files beside the program's.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { deflateSync } from "node:zlib";
 import {
-  PHOTOGRAPH, FOLDER_ADDRESS, browser, dotsIn, download, drawn, drop, dropBytes, folder, opened, program, redrawn, serve,
+  PHOTOGRAPH, FOLDER_ADDRESS, ROOT, browser, dotsIn, download, drawn, drop, dropBytes, folder, opened, program, redrawn, serve,
 } from "./common.mjs";
 
 let server, chromium, context;
@@ -244,6 +244,19 @@ test("opened from a folder, without a server", async () => {
   await page.waitForFunction(() => /points?:/.test(document.getElementById("tiles-status").textContent));
   assert.ok(page.asked.every((address) => /^(file|blob|data):/.test(address)));
   assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
+// Of lengths that leave 2, 0 and 6 bytes over when they are cut into sevens.
+test("samples are unpacked as they were packed", async () => {
+  const page = await opened(context, FOLDER_ADDRESS);
+  const unpacked = await page.evaluate(() =>
+    Object.entries(PACKED.samples).map(([name, packed]) => [name, [...new Uint8Array(bytesOf(packed))]]),
+  );
+  assert.equal(unpacked.length, 3);
+  for (const [name, bytes] of unpacked) {
+    assert.ok(readFileSync(join(ROOT, "web/samples", name)).equals(Buffer.from(bytes)), name);
+  }
   await page.close();
 });
 
